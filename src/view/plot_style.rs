@@ -153,7 +153,7 @@ mod tests {
     fn with_the_standard_colours_what_looks_alike_to_some_eyes_differs_in_line_and_width() {
         for curve_colors in CurveColors::ALL {
             assert_told_apart(curve_colors, |a, b, distance| {
-                distance > APART || a.pattern != b.pattern || (a.width - b.width).abs() > 0.5
+                distance > APART || (a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5
             });
         }
     }

@@ -4,7 +4,9 @@ use std::ops::RangeInclusive;
 
 use egui::{Align2, Color32, FontId, Id, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{Axis, AxisHints, GridInput, GridMark, Plot};
-use gdcm_files::figure::{compact, degree_step, step_above};
+use gdcm_core::units::{db_to_ratio, ratio_to_db};
+pub use gdcm_files::figure::FrequencyUnit;
+use gdcm_files::figure::{Range, Scale, Tick, TickGaps, compact, ticks_of};
 
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
@@ -50,16 +52,10 @@ pub(super) fn keep_ground(ui: &mut Ui) {
     ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
 }
 
-/// The look of one axis: tick texts from `text`, and `label` beside it (none where empty), `thickness` points in all.
-pub fn axis_hints<'a>(
-    axis: Axis,
-    label: &str,
-    thickness: f32,
-    palette: &Palette,
-    text: impl Fn(GridMark) -> String + 'a,
-) -> AxisHints<'a> {
+/// The look of one axis, told by `ticks`, with `label` beside it (none where empty), `thickness` points in all.
+pub fn axis_hints<'a>(axis: Axis, label: &str, thickness: f32, palette: &Palette, ticks: Ticks) -> AxisHints<'a> {
     let hints = AxisHints::new(axis)
-        .formatter(move |mark, _: &RangeInclusive<f64>| text(mark))
+        .formatter(move |mark, _: &RangeInclusive<f64>| ticks.text(mark))
         .min_thickness(thickness)
         .label_spacing(LABEL_SPACING)
         .tick_label_color(palette.text)
@@ -89,54 +85,70 @@ pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
     GridMark { value, step_size: LABELLED * units_per_point }
 }
 
-/// A faint mark without a label at `value`, on an axis of `units_per_point`.
-pub fn minor_mark(value: f64, units_per_point: f64) -> GridMark {
-    GridMark { value, step_size: MINOR * units_per_point }
-}
+/// Least distance between two labels of a decade, and between two of its lines \[pt\].
+const DECADE_GAPS: [f64; 2] = [34.0, 5.0];
 
-/// Whether a mark of an axis of `units_per_point` has a label.
-pub fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
-    mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
-}
-
-/// The steps that ticks may have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ladder {
-    /// 1, 2, 5 times a power of ten: decibels, knots, gains.
-    Decimal,
-    /// Parts of a turn: 1, 2, 5, 10, 15, 30, 45, 60, 90, 180, 360 degrees and multiples of a turn.
+/// How the places along an axis of a plot are told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ticks {
+    /// As they are, with labels so many points apart: decibels, knots, gains.
+    Decimal(f64),
+    /// As they are, at parts of a turn.
     Degrees,
+    /// They are `log10(omega)`, told as frequencies in a unit.
+    Frequency(FrequencyUnit),
+    /// They are decibels, told as ratios.
+    Ratio,
 }
 
-impl Ladder {
-    /// The least step of this ladder that is not below `least`.
-    pub fn step(self, least: f64) -> f64 {
+impl Ticks {
+    /// A place as its number.
+    pub fn number(self, place: f64) -> f64 {
         match self {
-            Self::Degrees => degree_step(least),
-            Self::Decimal => step_above(least),
+            Self::Decimal(_) | Self::Degrees => place,
+            Self::Frequency(unit) => unit.of_omega(10f64.powf(place)),
+            Self::Ratio => db_to_ratio(place),
         }
     }
 
-    /// Labelled ticks between `bounds`, at least `gap` points apart on an axis of `units_per_point`.
-    pub fn marks(self, bounds: (f64, f64), units_per_point: f64, gap: f64) -> Vec<GridMark> {
-        if !(units_per_point > 0.0 && units_per_point.is_finite() && bounds.0 < bounds.1) {
+    /// The place of a number; not finite where it has none.
+    pub fn place(self, number: f64) -> f64 {
+        match self {
+            Self::Decimal(_) | Self::Degrees => number,
+            Self::Frequency(unit) => (number / unit.of_omega(1.0)).log10(),
+            Self::Ratio => ratio_to_db(number),
+        }
+    }
+
+    /// Ticks and grid lines between two places on an axis of `units_per_point`.
+    pub fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
+        let is_finite = [bounds.0, bounds.1, units_per_point].into_iter().all(f64::is_finite);
+        if !(is_finite && units_per_point > 0.0 && bounds.0 < bounds.1) {
             return Vec::new();
         }
-        let step = self.step(gap * units_per_point);
-        let slack = 1e-6;
-        let indices = (bounds.0 / step - slack).ceil() as i64..=(bounds.1 / step + slack).floor() as i64;
-        indices.map(|k| labelled_mark(k as f64 * step, units_per_point)).collect()
+        let (scale, labels) = match self {
+            Self::Decimal(gap) => (Scale::Linear, gap),
+            Self::Degrees => (Scale::Degrees, VERTICAL_TICK_GAP),
+            Self::Frequency(_) | Self::Ratio => (Scale::Logarithmic, DECADE_GAPS[0]),
+        };
+        let gaps = TickGaps { labels, equal_steps: 1.5 * labels, lines: DECADE_GAPS[1] };
+        let range = Range::new(self.number(bounds.0), self.number(bounds.1));
+        let mark = |tick: Tick| GridMark {
+            value: self.place(tick.value),
+            step_size: if tick.label.is_some() { LABELLED } else { MINOR } * units_per_point,
+        };
+        ticks_of(scale, range, (bounds.1 - bounds.0) / units_per_point, gaps).into_iter().map(mark).collect()
     }
 
     /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
-    pub fn spacer(self, gap: f64) -> impl Fn(GridInput) -> Vec<GridMark> {
-        move |input| self.marks(input.bounds, input.base_step_size, gap)
+    pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
+        move |input| self.marks(input.bounds, input.base_step_size)
     }
-}
 
-/// The text of a tick of a linear axis.
-pub fn tick_text(mark: GridMark) -> String {
-    compact(mark.value)
+    /// The text of a tick.
+    pub fn text(self, mark: GridMark) -> String {
+        compact(self.number(mark.value))
+    }
 }
 
 /// Shows `message` in the middle of `rect`, which it takes from `ui`.
@@ -151,39 +163,103 @@ pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palet
 
 #[cfg(test)]
 mod tests {
-    use super::super::axes::*;
+    use super::*;
 
-    fn values(ladder: Ladder, bounds: (f64, f64), points: f64) -> Vec<f64> {
-        let marks = ladder.marks(bounds, (bounds.1 - bounds.0) / points, 28.0);
+    /// Whether a mark of an axis of `units_per_point` has a label.
+    fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
+        mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
+    }
+
+    fn values(ticks: Ticks, bounds: (f64, f64), points: f64) -> Vec<f64> {
+        let marks = ticks.marks(bounds, (bounds.1 - bounds.0) / points);
         marks.into_iter().map(|mark| mark.value).collect()
     }
 
     #[test]
     fn magnitudes_are_labelled_at_five_ten_or_twenty_decibels() {
-        assert_eq!(values(Ladder::Decimal, (-26.0, 10.0), 290.0), [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]);
         assert_eq!(
-            values(Ladder::Decimal, (-80.0, 20.0), 290.0),
+            values(Ticks::Decimal(28.0), (-26.0, 10.0), 290.0),
+            [-25.0, -20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0]
+        );
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-80.0, 20.0), 290.0),
             [-80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0]
         );
     }
 
     #[test]
     fn phases_are_labelled_at_parts_of_a_turn() {
-        assert_eq!(values(Ladder::Degrees, (-330.0, 60.0), 200.0), [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]);
-        assert_eq!(values(Ladder::Degrees, (-200.0, 10.0), 250.0), [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]);
-        assert_eq!(values(Ladder::Degrees, (-900.0, 0.0), 200.0), [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]);
-    }
-
-    #[test]
-    fn a_step_is_the_next_round_number() {
-        for (least, step) in [(0.011, 0.02), (0.2, 0.2), (3.0, 5.0), (6.0, 10.0), (1e-7, 1e-7)] {
-            assert!((step_above(least) / step - 1.0).abs() < 1e-9, "{least}: {}", step_above(least));
-        }
+        assert_eq!(values(Ticks::Degrees, (-330.0, 60.0), 200.0), [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]);
+        assert_eq!(values(Ticks::Degrees, (-200.0, 10.0), 250.0), [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]);
+        assert_eq!(values(Ticks::Degrees, (-900.0, 0.0), 200.0), [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]);
     }
 
     #[test]
     fn bounds_that_are_no_range_give_no_ticks() {
-        assert!(Ladder::Decimal.marks((1.0, 1.0), 0.0, 28.0).is_empty());
-        assert!(Ladder::Degrees.marks((0.0, f64::NAN), f64::NAN, 28.0).is_empty());
+        assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
+        assert!(Ticks::Degrees.marks((0.0, f64::NAN), f64::NAN).is_empty());
+    }
+
+    fn labels(unit: FrequencyUnit, omega: (f64, f64), points: f64) -> Vec<String> {
+        let bounds = (omega.0.log10(), omega.1.log10());
+        let decades_per_point = (bounds.1 - bounds.0) / points;
+        let marks = Ticks::Frequency(unit).marks(bounds, decades_per_point);
+        marks
+            .into_iter()
+            .filter(|mark| is_labelled(*mark, decades_per_point))
+            .map(|mark| Ticks::Frequency(unit).text(mark))
+            .collect()
+    }
+
+    #[test]
+    fn a_usual_plot_is_labelled_at_one_two_five() {
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0), ["0.5", "1", "2", "5", "10", "20"]);
+    }
+
+    #[test]
+    fn a_narrow_plot_is_labelled_at_decades_only() {
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0), ["0.1", "1", "10", "100"]);
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(), 5);
+    }
+
+    #[test]
+    fn a_close_view_is_labelled_in_equal_steps() {
+        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0).first().map(String::as_str), Some("2"));
+        assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
+        let texts = labels(FrequencyUnit::RadPerSecond, (1.2, 4.2), 900.0);
+        assert_eq!(texts, ["1.5", "2", "2.5", "3", "3.5", "4"]);
+    }
+
+    #[test]
+    fn ticks_in_hertz_are_round_in_hertz() {
+        assert_eq!(labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0), ["0.05", "0.1", "0.2", "0.5", "1", "2"]);
+    }
+
+    #[test]
+    fn no_two_labels_are_closer_than_the_gap_at_any_zoom() {
+        for width in [1e-4, 0.01, 0.1, 0.4, 0.8, 1.3, 1.8, 3.0, 7.0, 12.0] {
+            for points in [150.0, 400.0, 900.0, 2500.0] {
+                let per_point = width / points;
+                let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((-0.52, -0.52 + width), per_point);
+                let labelled: Vec<_> = marks.iter().filter(|m| is_labelled(**m, per_point)).collect();
+                assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
+                for pair in labelled.windows(2) {
+                    let gap = (pair[1].value - pair[0].value) / per_point;
+                    assert!(gap > 0.99 * DECADE_GAPS[0], "{width} {points}: {gap}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_decade_has_nine_lines_where_there_is_room() {
+        let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
+        assert_eq!(marks.len(), 9);
+    }
+
+    #[test]
+    fn bounds_that_are_no_range_give_no_marks() {
+        assert!(Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((1.0, 1.0), 0.1).is_empty());
+        assert!(Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((f64::NAN, 1.0), 0.1).is_empty());
     }
 }

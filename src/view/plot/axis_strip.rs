@@ -5,6 +5,7 @@ use egui::{
 };
 use gdcm_files::figure::{Range, compact};
 
+use super::axes::Ticks;
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
 use super::curve::Pane;
@@ -188,17 +189,17 @@ impl PlotAxis {
         if symbol.is_empty() { String::new() } else { format!(" [{symbol}]") }
     }
 
-    /// A place on the axis as its number.
-    fn number(self, scene: &BodeScene<'_>, place: f64) -> f64 {
+    /// How its places are told.
+    fn ticks(self, scene: &BodeScene<'_>) -> Ticks {
         match self {
-            Self::Frequency => scene.unit.of_omega(10f64.powf(place)),
-            Self::Values(pane) => scene.quantity.unit(pane).of_drawn(place),
+            Self::Frequency => Ticks::Frequency(scene.unit),
+            Self::Values(pane) => scene.quantity.unit(pane).ticks(),
         }
     }
 
     /// The ends of a range as they are typed.
     pub(super) fn texts(self, scene: &BodeScene<'_>, range: Range) -> [String; 2] {
-        [range.min, range.max].map(|place| compact(self.number(scene, place)))
+        [range.min, range.max].map(|place| compact(self.ticks(scene).number(place)))
     }
 
     /// The range between two numbers as they are typed, or why it cannot be shown.
@@ -210,13 +211,8 @@ impl PlotAxis {
     /// The place on the axis of a number as it is typed, with either minus sign.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, LimitRefusal> {
         let number = text.trim().replace('\u{2212}', "-").parse::<f64>().ok();
-        let (place, what) = match self {
-            Self::Frequency => {
-                let omega = number.map(|number| number / scene.unit.of_omega(1.0));
-                (omega.filter(|omega| *omega > 0.0).map(f64::log10), "frequency")
-            }
-            Self::Values(pane) => (number.and_then(|number| scene.quantity.unit(pane).to_drawn(number)), "value"),
-        };
+        let what = if self == Self::Frequency { "frequency" } else { "value" };
+        let place = number.map(|number| self.ticks(scene).place(number));
         let finite = place.filter(|place| place.is_finite());
         finite.ok_or_else(|| LimitRefusal::NoNumber { text: text.trim().to_owned(), what })
     }
@@ -225,7 +221,7 @@ impl PlotAxis {
 #[cfg(test)]
 mod tests {
     use super::super::axis_strip::*;
-    use crate::view::plot::log_axis::FrequencyUnit;
+    use gdcm_files::figure::FrequencyUnit;
 
     fn texts(min: &str, max: &str) -> [String; 2] {
         [min.to_owned(), max.to_owned()]

@@ -5,14 +5,13 @@ use std::collections::BTreeSet;
 use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
 
-use super::axes::{caption_font, message_ui, use_frame_colors};
+use super::axes::{FrequencyUnit, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{BandChange, Emphasis, band_handles_ui, pane_ui};
 use super::bode_view::BodeView;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
-use super::legend::{self, Chip, LegendAnswer, chips_ui};
-use super::log_axis::FrequencyUnit;
+use super::legend::{self, Chip, chips_ui};
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, curve_tooltip_ui, readout_box_ui};
@@ -281,7 +280,7 @@ fn drag_band(
 ) {
     let Some(transform) = view.transform(pane) else { return };
     let place = scene.quantity.place(pane);
-    events.extend(band_handles_ui(ui, place, scene.band, transform, scene.unit, palette).map(|change| match change {
+    events.extend(band_handles_ui(ui, &place, scene.band, transform, scene.unit, palette).map(|change| match change {
         BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
         BandChange::Released => BodeEvent::BandReleased,
     }));
@@ -311,11 +310,8 @@ fn captions_ui(
     let points = || scene.curves.iter().flat_map(|curve| curve.points(Pane::Magnitude));
     let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
     let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
-    if let LegendAnswer::Toggled(role) =
-        legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette)
-    {
-        events.push(BodeEvent::RoleToggled(role));
-    }
+    let toggled = legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette);
+    events.extend(toggled.map(BodeEvent::RoleToggled));
     if let Some(readout) = scene.readout {
         let labelled = !scene.rules.is_empty();
         readout_box_ui(ui, frame, readout, (view.legend.rect, labelled), palette);

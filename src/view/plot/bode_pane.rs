@@ -6,16 +6,16 @@ use egui::{
 };
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::LogAxis;
-use super::axes::{LABELLED_HEIGHT, TICKS_HEIGHT, axis_hints, caption_font, keep_ground, quiet_plot};
+use super::axes::{
+    FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
+};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
-use super::bode_view::BodeView;
-use super::cached_raster::{CachedRaster, ImageItem, MANY, StillScene};
-use super::curve::{BodeCurve, CurveId, CurveItem, Pane};
+use super::bode_view::{BodeView, DrawnPane};
+use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
+use super::curve::{BodeCurve, CurveId, DrawnItem, Pane, curve_lines};
 use super::curve_style::Role;
 use super::drawn_curves::{DrawnCurves, Pixel};
-use super::log_axis::FrequencyUnit;
 use super::navigation::{Turn, plot_keys, turned};
 use super::picking::drawn_box_ui;
 use super::rule::{draw_band, rules_ui, strips_ui};
@@ -47,11 +47,10 @@ pub(super) fn pane_ui(
     palette: &Palette,
 ) -> Response {
     let name = scene.quantity.name(pane);
-    let id = ui.make_persistent_id(name);
-    let builder = UiBuilder::new().id_salt(name).max_rect(rect);
-    let (drawn, image) = view.drawn(pane);
-    let (mut kept, mut kept_image) = (std::mem::take(drawn), std::mem::take(image));
-    let (drawn, image) = (&mut kept, &mut kept_image);
+    let id = ui.make_persistent_id(&name);
+    let builder = UiBuilder::new().id_salt(&name).max_rect(rect);
+    let mut kept = std::mem::take(&mut view.drawn[pane as usize]);
+    let DrawnPane { curves: drawn, image, .. } = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
         keep_ground(ui);
         let bounds = view.bounds(pane);
@@ -69,8 +68,7 @@ pub(super) fn pane_ui(
         })
     });
     let shown = shown.inner;
-    (*view.drawn(pane).0, *view.drawn(pane).1) = (kept, kept_image);
-    view.remember(pane, shown.transform);
+    view.drawn[pane as usize] = DrawnPane { transform: Some(shown.transform), ..kept };
     drag(ui, pane, &shown.response, view, palette);
     zoom_by_scrolling(ui, pane, &shown.response, view);
     plot_keys(ui, pane, &shown.response, view);
@@ -107,16 +105,15 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         Pane::Magnitude => (String::new(), TICKS_HEIGHT),
         Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
     };
-    let frequency_text = move |mark| LogAxis(unit).tick_text(mark);
-    let (values, value_label) = (scene.quantity.unit(pane), scene.quantity.axis_label(pane));
-    let value_text = move |mark| values.tick_text(mark);
+    let frequencies = Ticks::Frequency(unit);
+    let (values, value_label) = (scene.quantity.unit(pane).ticks(), scene.quantity.axis_label(pane));
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
-        .x_grid_spacer(LogAxis(unit).spacer())
+        .x_grid_spacer(frequencies.spacer())
         .y_grid_spacer(values.spacer())
-        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequency_text)])
-        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, value_text)])
+        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequencies)])
+        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, values)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
@@ -138,14 +135,15 @@ fn draw_curves<'a>(
     plot: &mut PlotUi<'a>,
     scene: &BodeScene<'_>,
     drawn: &'a DrawnCurves,
-    image: Option<ImageItem>,
+    image: Option<StillImage>,
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
     let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
     let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
     if let Some(image) = image {
-        plot.add(image);
+        let strength = if scene.stale { STALE } else { 1.0 };
+        plot.add(DrawnItem::new(move |_, shapes| shapes.push(image.shape(strength))));
         curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || is_emphasized(curve));
     }
     curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
@@ -156,7 +154,7 @@ fn draw_curves<'a>(
         } else if scene.stale {
             look.color = look.color.gamma_multiply(STALE);
         }
-        plot.add(CurveItem::new(drawn.runs(index), look));
+        plot.add(DrawnItem::new(move |transform, shapes| curve_lines(drawn.runs(index), look, transform, shapes)));
     }
 }
 
@@ -168,7 +166,7 @@ fn image_of_many(
     image: &mut CachedRaster,
     transform: &PlotTransform,
     palette: &Palette,
-) -> Option<ImageItem> {
+) -> Option<StillImage> {
     let mut curves: Vec<_> = scene.curves.iter().enumerate().filter(|(_, curve)| lies_at_the_bottom(curve)).collect();
     if curves.len() < MANY {
         return None;
@@ -180,12 +178,11 @@ fn image_of_many(
         pixels_per_point: ctx.pixels_per_point(),
         curves: curves.iter().map(|(index, curve)| (drawn.serial(*index), look(curve))).collect(),
     };
-    let image = image.of(ctx, still, || {
-        let lines =
-            |(index, curve): &(usize, &BodeCurve)| CurveItem::new(drawn.runs(*index), look(curve)).lines(transform);
-        curves.iter().flat_map(lines).collect()
-    });
-    image.map(|image| if scene.stale { image.faded(STALE) } else { image })
+    image.of(ctx, still, || {
+        let mut shapes = Vec::new();
+        curves.iter().for_each(|(index, curve)| curve_lines(drawn.runs(*index), look(curve), transform, &mut shapes));
+        shapes
+    })
 }
 
 /// Whether a curve is one of many that only say how far their bundle reaches.

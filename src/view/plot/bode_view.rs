@@ -30,8 +30,8 @@ const FIT_MARGIN: f64 = 0.04;
 #[derive(Clone, Debug)]
 pub struct BodeView {
     log_omega: ViewedRange,
-    magnitude_db: ViewedRange,
-    phase_deg: ViewedRange,
+    /// Magnitudes \[dB\] and phases \[deg\].
+    values: [ViewedRange; 2],
     pub(super) legend: LegendState,
     pub(super) hovered: Option<CurveId>,
     /// The frequency under the pointer \[rad/s\].
@@ -47,20 +47,26 @@ pub struct BodeView {
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    magnitude_transform: Option<PlotTransform>,
-    phase_transform: Option<PlotTransform>,
-    magnitude_curves: DrawnCurves,
-    phase_curves: DrawnCurves,
-    magnitude_image: CachedRaster,
-    phase_image: CachedRaster,
+    /// What each pane drew last.
+    pub(super) drawn: [DrawnPane; 2],
+}
+
+/// What a pane drew last: where, its lines, and the image of those that stand still.
+#[derive(Clone, Debug, Default)]
+pub(super) struct DrawnPane {
+    pub(super) transform: Option<PlotTransform>,
+    pub(super) curves: DrawnCurves,
+    pub(super) image: CachedRaster,
 }
 
 impl Default for BodeView {
     fn default() -> Self {
         Self {
             log_omega: ViewedRange::new(Range { min: -1.0, max: 2.0 }, DECADES, LOG_OMEGA),
-            magnitude_db: ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
-            phase_deg: ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
+            values: [
+                ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
+                ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
+            ],
             legend: LegendState { is_open: true, corner: None, rect: None },
             hovered: None,
             pointed_omega: None,
@@ -71,12 +77,7 @@ impl Default for BodeView {
             limits: None,
             must_fit_frequencies: true,
             must_fit_values: true,
-            magnitude_transform: None,
-            phase_transform: None,
-            magnitude_curves: DrawnCurves::default(),
-            phase_curves: DrawnCurves::default(),
-            magnitude_image: CachedRaster::default(),
-            phase_image: CachedRaster::default(),
+            drawn: Default::default(),
         }
     }
 }
@@ -85,8 +86,7 @@ impl BodeView {
     /// Shows all of the data at the next frame, whatever the engineer has zoomed into.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
-        self.magnitude_db.release();
-        self.phase_deg.release();
+        self.values.iter_mut().for_each(ViewedRange::release);
         self.must_fit_frequencies = true;
         self.must_fit_values = true;
     }
@@ -98,7 +98,7 @@ impl BodeView {
 
     /// Shows all values of a pane at the next frame: they are in another unit.
     pub fn release_values(&mut self, pane: Pane) {
-        self.values(pane).release();
+        self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
@@ -147,26 +147,13 @@ impl BodeView {
 
     /// The part of a pane's vertical axis in view, where the engineer chose it.
     pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
-        let viewed = match pane {
-            Pane::Magnitude => &self.magnitude_db,
-            Pane::Phase => &self.phase_deg,
-        };
+        let viewed = &self.values[pane as usize];
         viewed.is_chosen().then(|| viewed.range())
     }
 
     /// The part of a pane's vertical axis that is in view.
     pub fn value_range(&self, pane: Pane) -> Range {
-        match pane {
-            Pane::Magnitude => self.magnitude_db.range(),
-            Pane::Phase => self.phase_deg.range(),
-        }
-    }
-
-    fn values(&mut self, pane: Pane) -> &mut ViewedRange {
-        match pane {
-            Pane::Magnitude => &mut self.magnitude_db,
-            Pane::Phase => &mut self.phase_deg,
-        }
+        self.values[pane as usize].range()
     }
 
     /// Where the magnitude plot was drawn last: x is `log10 omega`, y is in dB.
@@ -181,10 +168,7 @@ impl BodeView {
 
     /// Where a pane was drawn last.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
-        match pane {
-            Pane::Magnitude => self.magnitude_transform.as_ref(),
-            Pane::Phase => self.phase_transform.as_ref(),
-        }
+        self.drawn[pane as usize].transform.as_ref()
     }
 
     /// Where `value` at `omega` \[rad/s\] is on the screen.
@@ -193,26 +177,10 @@ impl BodeView {
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// What a pane drew last: its lines, and the image of those that stand still.
-    pub(super) fn drawn(&mut self, pane: Pane) -> (&mut DrawnCurves, &mut CachedRaster) {
-        match pane {
-            Pane::Magnitude => (&mut self.magnitude_curves, &mut self.magnitude_image),
-            Pane::Phase => (&mut self.phase_curves, &mut self.phase_image),
-        }
-    }
-
     /// The part in view of a pane as egui_plot wants it.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
         let (frequencies, values) = (self.log_omega.range(), self.value_range(pane));
         PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
-    }
-
-    /// Remembers where a pane was drawn.
-    pub(super) fn remember(&mut self, pane: Pane, transform: PlotTransform) {
-        match pane {
-            Pane::Magnitude => self.magnitude_transform = Some(transform),
-            Pane::Phase => self.phase_transform = Some(transform),
-        }
     }
 
     /// Moves what a pane shows by so much on the screen.
@@ -221,7 +189,7 @@ impl BodeView {
         let [x_per_point, y_per_point] = transform.dvalue_dpos();
         self.log_omega.choose(self.log_omega.range().moved(-x_per_point * f64::from(by.x)));
         let values = self.value_range(pane).moved(-y_per_point * f64::from(by.y));
-        self.values(pane).choose(values);
+        self.values[pane as usize].choose(values);
     }
 
     /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
@@ -230,7 +198,7 @@ impl BodeView {
         let fixed = transform.value_from_position(pointer);
         self.log_omega.choose(self.log_omega.range().zoomed(frequency_factor, fixed.x));
         let values = self.value_range(pane).zoomed(value_factor, fixed.y);
-        self.values(pane).choose(values);
+        self.values[pane as usize].choose(values);
     }
 
     /// What is in view of an axis.
@@ -244,7 +212,7 @@ impl BodeView {
     fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
         match axis {
             PlotAxis::Frequency => &mut self.log_omega,
-            PlotAxis::Values(pane) => self.values(pane),
+            PlotAxis::Values(pane) => &mut self.values[pane as usize],
         }
     }
 
@@ -279,7 +247,7 @@ impl BodeView {
         let Some(transform) = self.transform(pane) else { return };
         let (a, b) = (transform.value_from_position(area.min), transform.value_from_position(area.max));
         self.log_omega.choose(Range::new(a.x, b.x));
-        self.values(pane).choose(Range::new(a.y, b.y));
+        self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
     /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
@@ -300,7 +268,7 @@ impl BodeView {
             self.legend.corner = None;
             for pane in [Pane::Magnitude, Pane::Phase] {
                 if let Some(values) = fitted_values(scene.curves, pane, scene.band) {
-                    self.values(pane).fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
+                    self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
                 }
             }
         }

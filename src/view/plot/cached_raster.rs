@@ -1,7 +1,6 @@
 //! Many curves that stand still, as one image.
 
 use egui::{Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2};
-use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
 use vello_cpu::color::AlphaColor;
 use vello_cpu::kurbo::{Affine, BezPath, Circle, Join, Shape as _, Stroke as PathStroke};
 use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
@@ -51,7 +50,7 @@ impl CachedRaster {
         ctx: &Context,
         scene: StillScene,
         shapes: impl FnOnce() -> Vec<Shape>,
-    ) -> Option<ImageItem> {
+    ) -> Option<StillImage> {
         if self.scene.as_ref() != Some(&scene) {
             *self = Self { scene: Some(scene), image: None };
             // Whatever moves is drawn as lines; the frame after it tells whether it has come to rest.
@@ -68,12 +67,7 @@ impl CachedRaster {
             self.image = Some((ctx.load_texture("curves at rest", image, TextureOptions::NEAREST), area));
         }
         let (texture, area) = self.image.as_ref()?;
-        Some(ImageItem {
-            base: PlotItemBase::new(String::new()),
-            texture: texture.clone(),
-            area: *area,
-            tint: Color32::WHITE,
-        })
+        Some(StillImage { texture: texture.clone(), area: *area })
     }
 }
 
@@ -132,52 +126,17 @@ fn take_color(context: &mut RenderContext, color: Color32) {
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }
 
-/// The image among the items of a plot, on whole pixels. (A `PlotImage` lies below every other item, bands too, and has its
-/// size in the plot's coordinates.)
-pub(super) struct ImageItem {
-    base: PlotItemBase,
+/// An image on whole pixels. (A `PlotImage` lies below every other item, bands too, and has its size in the plot's coordinates.)
+pub(super) struct StillImage {
     texture: TextureHandle,
     area: Rect,
-    tint: Color32,
 }
 
-impl ImageItem {
+impl StillImage {
     /// The image with so much of its strength.
-    pub(super) fn faded(self, part: f32) -> Self {
-        Self { tint: Color32::WHITE.gamma_multiply(part), ..self }
-    }
-}
-
-impl PlotItem for ImageItem {
-    fn shapes(&self, _: &egui::Ui, _: &PlotTransform, shapes: &mut Vec<Shape>) {
+    pub(super) fn shape(&self, strength: f32) -> Shape {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        shapes.push(Shape::image(self.texture.id(), self.area, whole, self.tint));
-    }
-
-    fn initialize(&mut self, _: std::ops::RangeInclusive<f64>) {}
-
-    fn color(&self) -> Color32 {
-        Color32::TRANSPARENT
-    }
-
-    fn allow_hover(&self) -> bool {
-        false
-    }
-
-    fn geometry(&self) -> PlotGeometry<'_> {
-        PlotGeometry::None
-    }
-
-    fn bounds(&self) -> PlotBounds {
-        PlotBounds::NOTHING
-    }
-
-    fn base(&self) -> &PlotItemBase {
-        &self.base
-    }
-
-    fn base_mut(&mut self) -> &mut PlotItemBase {
-        &mut self.base
+        Shape::image(self.texture.id(), self.area, whole, Color32::WHITE.gamma_multiply(strength))
     }
 }
 
@@ -185,11 +144,12 @@ impl PlotItem for ImageItem {
 mod tests {
     use egui::{RawInput, vec2};
 
-    use super::super::curve_style::LinePattern;
     use super::*;
+    use gdcm_files::figure::Dash;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {
-        let look = CurveStyle { color: Color32::RED, width: 2.0, pattern: LinePattern::Solid };
+        let look =
+            CurveStyle { color: Color32::RED, width: 2.0, dash: Dash::Solid, length: 0.0, ground: Color32::BLACK };
         let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
         StillScene { frame, pixels_per_point: 1.5, curves: curves.iter().map(|serial| (*serial, look)).collect() }
     }

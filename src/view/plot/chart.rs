@@ -5,12 +5,10 @@ use std::sync::Arc;
 use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2};
 use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
 
-use super::LogAxis;
 use super::axes::{
-    LABELLED_HEIGHT, Ladder, TICKS_HEIGHT, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot, tick_text,
+    FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot,
 };
 use super::drawn_curves::{Pixel, thinned};
-use super::log_axis::FrequencyUnit;
 use super::navigation::{Turn, turned};
 use crate::view::palette::Palette;
 
@@ -190,6 +188,7 @@ fn count(chart: &Chart<'_>) -> usize {
 
 fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Plot<'a> {
     let height = if chart.across_label.is_empty() { TICKS_HEIGHT } else { LABELLED_HEIGHT };
+    let values = Ticks::Decimal(VERTICAL_TICK_GAP);
     let plot = quiet_plot(id, palette)
         .sense(Sense::click_and_drag())
         .auto_bounds(true)
@@ -199,27 +198,19 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
         .set_margin_fraction(egui::vec2(0.01, 0.08))
         .width(rect.width())
         .height(rect.height())
-        .y_grid_spacer(Ladder::Decimal.spacer(VERTICAL_TICK_GAP))
-        .custom_y_axes(vec![axis_hints(Axis::Y, chart.value_label, VALUE_AXIS_WIDTH, palette, tick_text)]);
-    let plot = match chart.across {
-        ChartAxis::Linear => plot.x_grid_spacer(Ladder::Decimal.spacer(TICK_GAP)).custom_x_axes(vec![axis_hints(
-            Axis::X,
-            chart.across_label,
-            height,
-            palette,
-            tick_text,
-        )]),
-        ChartAxis::Frequency(unit) => {
-            let text = move |mark| LogAxis(unit).tick_text(mark);
-            plot.x_grid_spacer(LogAxis(unit).spacer()).custom_x_axes(vec![axis_hints(
-                Axis::X,
-                chart.across_label,
-                height,
-                palette,
-                text,
-            )])
-        }
+        .y_grid_spacer(values.spacer())
+        .custom_y_axes(vec![axis_hints(Axis::Y, chart.value_label, VALUE_AXIS_WIDTH, palette, values)]);
+    let ticks = match chart.across {
+        ChartAxis::Linear => Ticks::Decimal(TICK_GAP),
+        ChartAxis::Frequency(unit) => Ticks::Frequency(unit),
     };
+    let plot = plot.x_grid_spacer(ticks.spacer()).custom_x_axes(vec![axis_hints(
+        Axis::X,
+        chart.across_label,
+        height,
+        palette,
+        ticks,
+    )]);
     match chart.group {
         Some(group) => plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false)),
         None => plot,

@@ -64,7 +64,7 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
 }
 
-/// The numbers that a pane showed of a curve. They are held, so that no others can take their place in memory.
+/// The numbers that a pane showed of a curve.
 #[derive(Clone, Debug)]
 pub(super) struct CurveNumbers {
     omega: Arc<[f64]>,
@@ -77,45 +77,54 @@ impl CurveNumbers {
         Self { omega: Arc::clone(&curve.omega), values: Arc::clone(curve.shared_values(pane)) }
     }
 
-    /// Whether `curve` still has them: without looking at any.
+    /// Whether `curve` still has them: mostly they are in the same place in memory.
     pub(super) fn are_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
-        Arc::ptr_eq(&self.values, curve.shared_values(pane)) && Arc::ptr_eq(&self.omega, &curve.omega)
+        let same = |one: &Arc<[f64]>, other: &Arc<[f64]>| {
+            // Gaps are not numbers: they are the same by their bits.
+            let bits = |values: &Arc<[f64]>| {
+                values.iter().map(|value| value.to_bits()).eq(other.iter().map(|value| value.to_bits()))
+            };
+            Arc::ptr_eq(one, other) || bits(one)
+        };
+        same(&self.values, curve.shared_values(pane)) && same(&self.omega, &curve.omega)
     }
 }
 
-/// A curve of one or more runs of points, drawn as its look says. Pointing at it is not egui_plot's business.
-pub(super) struct CurveItem<'a> {
-    base: PlotItemBase,
-    runs: &'a [Vec<PlotPoint>],
+/// What a curve of one or more runs of points is drawn of, in screen coordinates.
+pub(super) fn curve_lines(
+    runs: &[Vec<PlotPoint>],
     look: CurveStyle,
-}
-
-impl<'a> CurveItem<'a> {
-    /// The curve through each of `runs`.
-    pub(super) fn new(runs: &'a [Vec<PlotPoint>], look: CurveStyle) -> Self {
-        Self { base: PlotItemBase::new(String::new()), runs, look }
-    }
-
-    /// What it is drawn of, in screen coordinates.
-    pub(super) fn lines(&self, transform: &PlotTransform) -> Vec<Shape> {
-        let mut shapes = Vec::new();
-        for run in self.runs {
-            let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
-            self.look.add_shapes(path, &mut shapes);
-        }
-        shapes
+    transform: &PlotTransform,
+    shapes: &mut Vec<Shape>,
+) {
+    for run in runs {
+        let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
+        look.add_shapes(path, shapes);
     }
 }
 
-impl PlotItem for CurveItem<'_> {
+/// Shapes among the items of a plot, which nobody points at: that is not egui_plot's business.
+pub(super) struct DrawnItem<'a> {
+    base: PlotItemBase,
+    draw: Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>,
+}
+
+impl<'a> DrawnItem<'a> {
+    /// What `draw` adds to the shapes of the plot.
+    pub(super) fn new(draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
+        Self { base: PlotItemBase::new(String::new()), draw: Box::new(draw) }
+    }
+}
+
+impl PlotItem for DrawnItem<'_> {
     fn shapes(&self, _: &Ui, transform: &PlotTransform, shapes: &mut Vec<Shape>) {
-        shapes.append(&mut self.lines(transform));
+        (self.draw)(transform, shapes);
     }
 
     fn initialize(&mut self, _: RangeInclusive<f64>) {}
 
     fn color(&self) -> Color32 {
-        self.look.color
+        Color32::TRANSPARENT
     }
 
     fn allow_hover(&self) -> bool {

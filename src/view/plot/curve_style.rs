@@ -6,33 +6,6 @@ use gdcm_files::figure::{Color, Dash, Hue};
 
 use crate::view::palette::Palette;
 
-/// What tells lines apart where colours do not.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum LinePattern {
-    /// One line.
-    Solid,
-    /// Two lines with the ground between them, which another line may fill.
-    Double {
-        /// Colour of the ground.
-        ground: Color32,
-    },
-    /// Dashes.
-    Dashed {
-        /// Of each dash \[pt\].
-        length: f32,
-    },
-    /// Dashes with a dot between them.
-    DashDotted {
-        /// Of each dash \[pt\].
-        length: f32,
-    },
-    /// Dots.
-    Dotted {
-        /// From one to the next \[pt\].
-        spacing: f32,
-    },
-}
-
 /// Gap between dashes as a part of their length.
 const GAP_OF_DASH: f32 = 0.618;
 /// Length of a dot between dashes \[pt\].
@@ -46,63 +19,59 @@ pub struct CurveStyle {
     /// Width of the line \[pt\].
     pub width: f32,
     /// Tells roles apart where colours do not.
-    pub pattern: LinePattern,
+    pub dash: Dash,
+    /// Of each dash, or from dot to dot \[pt\].
+    pub length: f32,
+    /// Between the two of a double line, which another line may fill.
+    pub ground: Color32,
 }
 
 impl CurveStyle {
     /// This line as it is drawn while something points at it.
     pub fn emphasized(self) -> Self {
         let color = self.color.to_opaque();
-        match self.pattern {
-            // Dots need room to stay dots.
-            LinePattern::Dotted { spacing } => {
-                let pattern = LinePattern::Dotted { spacing: 1.5 * spacing };
-                Self { color, width: self.width + 0.7, pattern }
-            }
-            _ => Self { color, width: self.width + 1.6, pattern: self.pattern },
-        }
+        // Dots need room to stay dots.
+        let (wider, longer) = if self.dash == Dash::Dotted { (0.7, 1.5) } else { (1.6, 1.0) };
+        Self { color, width: self.width + wider, length: longer * self.length, ..self }
     }
 
     /// This line in a small plot: narrower, with a shorter pattern.
     pub fn in_miniature(self) -> Self {
         /// Width as a part of that in a full plot.
         const WIDTH_PART: f32 = 0.72;
-        let pattern = match self.pattern {
-            LinePattern::Solid | LinePattern::Double { .. } => self.pattern,
-            LinePattern::Dashed { .. } => LinePattern::Dashed { length: 4.0 },
-            LinePattern::DashDotted { .. } => LinePattern::DashDotted { length: 6.0 },
-            LinePattern::Dotted { .. } => LinePattern::Dotted { spacing: 3.5 },
+        let length = match self.dash {
+            Dash::Solid | Dash::Double => 0.0,
+            Dash::Long | Dash::Short => 4.0,
+            Dash::DashDot | Dash::ShortDashDot => 6.0,
+            Dash::Dotted => 3.5,
         };
-        Self { width: WIDTH_PART * self.width, pattern, ..self }
+        Self { width: WIDTH_PART * self.width, length, ..self }
     }
 
     /// Whether the line is made of many pieces, which begin where it does.
     pub fn is_broken(&self) -> bool {
-        !matches!(self.pattern, LinePattern::Solid | LinePattern::Double { .. })
+        !matches!(self.dash, Dash::Solid | Dash::Double)
     }
 
     /// This line along `path`, in screen coordinates.
     pub fn add_shapes(&self, path: Vec<Pos2>, shapes: &mut Vec<Shape>) {
         let stroke = Stroke::new(self.width, self.color);
-        match self.pattern {
-            LinePattern::Solid => shapes.push(Shape::line(path, stroke)),
-            LinePattern::Double { ground } => {
+        let length = self.length;
+        match self.dash {
+            Dash::Solid => shapes.push(Shape::line(path, stroke)),
+            Dash::Double => {
+                let inner = gdcm_files::figure::Stroke::GROUND_OF_DOUBLE as f32 * self.width;
                 shapes.push(Shape::line(path.clone(), stroke));
-                shapes.push(Shape::line(
-                    path,
-                    Stroke::new(gdcm_files::figure::Stroke::GROUND_OF_DOUBLE as f32 * self.width, ground),
-                ));
+                shapes.push(Shape::line(path, Stroke::new(inner, self.ground)));
             }
-            LinePattern::Dashed { length } => {
+            Dash::Long | Dash::Short => {
                 Shape::dashed_line_many(&path, stroke, length, GAP_OF_DASH * length, shapes);
             }
-            LinePattern::DashDotted { length } => {
+            Dash::DashDot | Dash::ShortDashDot => {
                 let gap = GAP_OF_DASH * 0.6 * length;
                 Shape::dashed_line_many_with_offset(&path, stroke, &[length, DOT_LENGTH], &[gap, gap], 0.0, shapes);
             }
-            LinePattern::Dotted { spacing } => {
-                shapes.extend(Shape::dotted_line(&path, self.color, spacing, self.width))
-            }
+            Dash::Dotted => shapes.extend(Shape::dotted_line(&path, self.color, length, self.width)),
         }
     }
 }
@@ -132,16 +101,15 @@ impl Palette {
 
     /// A line as this theme draws it, as wide as the engineer wants it.
     pub fn curve_style(&self, line: gdcm_files::figure::Stroke) -> CurveStyle {
-        let pattern = match line.dash {
-            Dash::Solid => LinePattern::Solid,
-            Dash::Double => LinePattern::Double { ground: self.background },
-            Dash::Long => LinePattern::Dashed { length: 9.0 },
-            Dash::Short => LinePattern::Dashed { length: 5.0 },
-            Dash::Dotted => LinePattern::Dotted { spacing: 4.5 },
-            Dash::DashDot => LinePattern::DashDotted { length: 11.0 },
-            Dash::ShortDashDot => LinePattern::DashDotted { length: 5.0 },
+        let length = match line.dash {
+            Dash::Solid | Dash::Double => 0.0,
+            Dash::Long => 9.0,
+            Dash::Short | Dash::ShortDashDot => 5.0,
+            Dash::Dotted => 4.5,
+            Dash::DashDot => 11.0,
         };
-        CurveStyle { color: self.color(line.color), width: line.width_pt as f32 * self.line_width, pattern }
+        let (color, width) = (self.color(line.color), line.width_pt as f32 * self.line_width);
+        CurveStyle { color, width, dash: line.dash, length, ground: self.background }
     }
 
     /// How a curve of a role is drawn.
@@ -156,21 +124,21 @@ mod tests {
 
     use super::*;
 
-    fn shapes(pattern: LinePattern) -> usize {
+    fn shapes(dash: Dash, length: f32) -> usize {
         let mut shapes = Vec::new();
-        let look = CurveStyle { color: Color32::WHITE, width: 2.0, pattern };
+        let look = CurveStyle { color: Color32::WHITE, width: 2.0, dash, length, ground: Color32::BLACK };
         look.add_shapes(vec![pos2(0.0, 0.0), pos2(100.0, 0.0)], &mut shapes);
         shapes.len()
     }
 
     #[test]
     fn every_pattern_looks_different_along_a_line() {
-        assert_eq!(shapes(LinePattern::Solid), 1);
-        assert_eq!(shapes(LinePattern::Double { ground: Color32::BLACK }), 2);
+        assert_eq!(shapes(Dash::Solid, 0.0), 1);
+        assert_eq!(shapes(Dash::Double, 0.0), 2);
         // 100 points of dashes of 8 with gaps of 4.9; of 8, 1.8 and two gaps of 3.0; of dots every 5 but at the end.
-        assert_eq!(shapes(LinePattern::Dashed { length: 8.0 }), 8);
-        assert_eq!(shapes(LinePattern::DashDotted { length: 8.0 }), 13);
-        assert_eq!(shapes(LinePattern::Dotted { spacing: 5.0 }), 20);
+        assert_eq!(shapes(Dash::Long, 8.0), 8);
+        assert_eq!(shapes(Dash::DashDot, 8.0), 13);
+        assert_eq!(shapes(Dash::Dotted, 5.0), 20);
     }
 
     #[test]
@@ -198,7 +166,7 @@ mod tests {
         let palette = Palette::dark();
         let look = palette.role_style(Role::Nominal, true);
         assert_eq!(look.color, palette.nominal);
-        assert!(matches!(look.pattern, LinePattern::Dotted { .. }));
+        assert_eq!(look.dash, Dash::Dotted);
     }
 
     #[test]
@@ -206,7 +174,7 @@ mod tests {
         let palette = Palette::light();
         for other in [Role::Nominal, Role::Identified, Role::IdentifiedRepresentative] {
             let (corrected, other) = (palette.role_style(Role::Corrected, false), palette.role_style(other, false));
-            assert!(corrected.pattern != other.pattern && (corrected.width - other.width).abs() > 0.5, "{other:?}");
+            assert!(corrected.dash != other.dash && (corrected.width - other.width).abs() > 0.5, "{other:?}");
         }
     }
 
@@ -225,7 +193,7 @@ mod tests {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
                     let (a, b) = (palette.role_style(a, false), palette.role_style(b, false));
-                    assert!(a.pattern != b.pattern || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
+                    assert!((a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
                 }
             }
         }

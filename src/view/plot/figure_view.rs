@@ -1,5 +1,7 @@
 //! A figure on the screen: its plots beside one another, what the pointer means in them, and what a click does.
 
+use std::ops::RangeInclusive;
+
 use egui::{
     Align2, CursorIcon, FontId, Id, Modifiers, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo,
     pos2, vec2,
@@ -9,7 +11,7 @@ use gdcm_core::study::ExplainTarget;
 use gdcm_files::figure::{Along, Area, Dots, Figure, Mark, MarkId, Panel, Plot, Range, Shape, dot_shapes};
 
 use super::axes::{
-    LABELLED_HEIGHT, Ladder, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font, tick_text,
+    LABELLED_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,
     use_frame_colors,
 };
 use super::canvas::{Canvas, LETTERS_PT, area};
@@ -357,17 +359,20 @@ impl PlotView {
 /// The frame with its axes.
 fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene<'_>, palette: &Palette) -> Frame<'a> {
     let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
-    let is_named = !names.is_empty();
+    let (is_named, values) = (!names.is_empty(), Ticks::Decimal(TICK_GAP));
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
     let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
     let count = names.len();
     let spacer = move |input: GridInput| match is_named {
         true => named_marks(&input, count, widest),
-        false => Ladder::Decimal.marks(input.bounds, input.base_step_size, TICK_GAP),
+        false => values.marks(input.bounds, input.base_step_size),
     };
-    let text = move |mark: GridMark| match is_named {
-        true => names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default(),
-        false => tick_text(mark),
+    let across = axis_hints(Side::X, &panel.x.label, LABELLED_HEIGHT, palette, values);
+    let across = match is_named {
+        true => across.formatter(move |mark, _: &RangeInclusive<f64>| {
+            names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default()
+        }),
+        false => across,
     };
     let label = if scene.figure.shared.y { "" } else { panel.y.label.as_str() };
     let plot = quiet_plot(id, palette)
@@ -376,9 +381,9 @@ fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene
         .height(size.y)
         .show_grid([!is_named, true])
         .x_grid_spacer(spacer)
-        .y_grid_spacer(Ladder::Decimal.spacer(TICK_GAP))
-        .custom_x_axes(vec![axis_hints(Side::X, &panel.x.label, LABELLED_HEIGHT, palette, text)])
-        .custom_y_axes(vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, tick_text)]);
+        .y_grid_spacer(values.spacer())
+        .custom_x_axes(vec![across])
+        .custom_y_axes(vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, values)]);
     if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
 }
 

@@ -64,17 +64,9 @@ pub(super) struct LegendState {
     pub(super) rect: Option<Rect>,
 }
 
-/// What was done with a legend.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum LegendAnswer {
-    /// The switch of a role was clicked.
-    Toggled(Role),
-    /// Nothing.
-    None,
-}
-
 /// Draws the legend into a corner of `frame`, the one with the fewest of the points that `covered` counts in a place. `plot` tells
-/// it from the legends of other plots. A click on its head folds and unfolds it.
+/// it from the legends of other plots. A click on its head folds and unfolds it; gives the role
+/// whose switch was clicked.
 pub(super) fn legend_ui(
     ui: &Ui,
     (frame, plot): (Rect, &str),
@@ -82,7 +74,7 @@ pub(super) fn legend_ui(
     state: &mut LegendState,
     covered: impl Fn(Rect) -> usize,
     palette: &Palette,
-) -> LegendAnswer {
+) -> Option<Role> {
     let painter = ui.painter().with_clip_rect(frame);
     let rows = Rows::new(&painter, entries, palette);
     let has_room = rows.size.x < 0.5 * frame.width() && rows.size.y < 0.75 * frame.height();
@@ -92,7 +84,7 @@ pub(super) fn legend_ui(
     let room = frame.shrink(MARGIN);
     if entries.is_empty() || size.x > room.width() || size.y > room.height() {
         state.rect = None;
-        return LegendAnswer::None;
+        return None;
     }
     let chosen = state.corner.filter(|(_, size)| *size == room.size());
     let (corner, _) = chosen.unwrap_or_else(|| (emptiest_corner(room, rows.size, covered), room.size()));
@@ -106,7 +98,7 @@ pub(super) fn legend_ui(
         state.is_open = !state.is_open;
     }
     painter.galley(rect.min + 0.5 * PADDING, head, palette.dim_text);
-    if is_unfolded { rows.ui(ui, (rect, plot), entries, palette) } else { LegendAnswer::None }
+    if is_unfolded { rows.ui(ui, (rect, plot), entries, palette) } else { None }
 }
 
 /// The head of the legend, which folds and unfolds it; gives whether it was clicked.
@@ -140,8 +132,8 @@ impl Rows {
     }
 
     /// One switch for each role.
-    fn ui(self, ui: &Ui, (rect, plot): (Rect, &str), entries: &[LegendEntry], palette: &Palette) -> LegendAnswer {
-        let mut answer = LegendAnswer::None;
+    fn ui(self, ui: &Ui, (rect, plot): (Rect, &str), entries: &[LegendEntry], palette: &Palette) -> Option<Role> {
+        let mut answer = None;
         let painter = ui.painter().with_clip_rect(rect);
         for (row, ((look, galley), entry)) in self.rows.into_iter().zip(entries).enumerate() {
             let top = rect.top() + PADDING.y + ROW_HEIGHT * (row + 1) as f32;
@@ -155,7 +147,7 @@ impl Rows {
             paint_row(&painter, place, entry, look, galley, palette);
             let hint = if entry.shown { "Click: hide these curves" } else { "Click: show these curves" };
             if response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(hint).clicked() {
-                answer = LegendAnswer::Toggled(entry.role);
+                answer = Some(entry.role);
             }
         }
         answer

@@ -14,7 +14,6 @@ mod curve_style;
 mod drawn_curves;
 mod figure_view;
 mod legend;
-mod log_axis;
 mod navigation;
 mod overview;
 mod picking;
@@ -26,7 +25,7 @@ mod sketch;
 mod tests;
 mod tiles;
 
-pub use gdcm_files::figure::{Across, Measure, Range, decimals};
+pub use gdcm_files::figure::{Across, FrequencyUnit, Measure, Range, decimals};
 
 pub use bode::*;
 pub use bode_view::*;
@@ -36,7 +35,6 @@ pub use curve_menu::*;
 pub use curve_style::*;
 pub use figure_view::*;
 pub use legend::*;
-pub use log_axis::*;
 pub use overview::*;
 pub use quantity::*;
 pub use readout::*;

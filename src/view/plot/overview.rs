@@ -190,10 +190,11 @@ fn cell_ui(
             paint_band(&painter, rect, scene.band, log_omega, palette);
             let sketch = view.sketches.entry((cell.pair, pane)).or_default();
             sketch.paint(&painter, cell.curves, (pane, rect), log_omega, palette);
-            if has_texts(place) && !sketch.range_text().is_empty() {
+            let range = sketch.range_text(pane);
+            if has_texts(place) && !range.is_empty() {
                 // For want of an axis.
                 let corner = rect.left_bottom() + vec2(3.0, -2.0);
-                paint_text(&painter, corner, Align2::LEFT_BOTTOM, sketch.range_text(), palette.dim_text, palette);
+                paint_text(&painter, corner, Align2::LEFT_BOTTOM, &range, palette.dim_text, palette);
             }
         }
         if has_texts(place) && !cell.note.is_empty() {

@@ -1,13 +1,11 @@
 //! What the two stacked panes show, and in which units.
 
-use egui_plot::{GridInput, GridMark};
-use gdcm_core::units::{db_to_ratio, ratio_to_db};
+use gdcm_core::units::db_to_ratio;
 pub use gdcm_files::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use gdcm_files::figure::{Range, compact, decimals};
 
-use super::axes::{Ladder, VERTICAL_TICK_GAP, tick_text};
+use super::axes::{Ticks, VERTICAL_TICK_GAP};
 use super::curve::Pane;
-use super::log_axis::logarithmic_marks;
 
 /// What the two stacked panes show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,60 +52,38 @@ impl BodeQuantity<'_> {
         BodeQuantity::Response { magnitude: MagnitudeUnit::Decibel, phase: PhaseUnit::Unwrapped, ratio_unit: "", place }
     }
 
+    /// What tells this plot from the others: its widgets, its labels, and what stands behind the name of a pane and behind its place.
+    fn words(self) -> [&'static str; 4] {
+        match self {
+            Self::Response { place: ResponsePlace::Condition, .. } => ["bode", "", "", " plot"],
+            Self::Response { place: ResponsePlace::EveryCondition, .. } => {
+                ["airspeeds", ", plot of airspeeds", " in every condition", " plot of every condition"]
+            }
+            Self::Response { place: ResponsePlace::FoundModel, .. } => {
+                ["found model", ", plot of a found model", " of a found model", " plot of a found model"]
+            }
+            Self::Error { .. } => ["error", ", error plot", " error", " error plot"],
+        }
+    }
+
     /// Tells this plot's widgets from those of the others.
     pub(super) fn salt(self) -> &'static str {
-        match self {
-            Self::Response { place: ResponsePlace::EveryCondition, .. } => "airspeeds",
-            Self::Response { place: ResponsePlace::FoundModel, .. } => "found model",
-            Self::Response { .. } => "bode",
-            Self::Error { .. } => "error",
-        }
+        self.words()[0]
     }
 
     /// What tells labels of this plot from the same ones of the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
-        match self {
-            Self::Response { place: ResponsePlace::EveryCondition, .. } => ", plot of airspeeds",
-            Self::Response { place: ResponsePlace::FoundModel, .. } => ", plot of a found model",
-            Self::Response { .. } => "",
-            Self::Error { .. } => ", error plot",
-        }
+        self.words()[1]
     }
 
     /// What a pane shows: "Magnitude".
-    pub(super) fn name(self, pane: Pane) -> &'static str {
-        match (self, pane) {
-            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Magnitude) => {
-                "Magnitude in every condition"
-            }
-            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Magnitude) => "Magnitude of a found model",
-            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Phase) => "Phase in every condition",
-            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Phase) => "Phase of a found model",
-            (Self::Response { .. }, Pane::Magnitude) => "Magnitude",
-            (Self::Response { .. }, Pane::Phase) => "Phase",
-            (Self::Error { .. }, Pane::Magnitude) => "Magnitude error",
-            (Self::Error { .. }, Pane::Phase) => "Phase error",
-        }
+    pub(super) fn name(self, pane: Pane) -> String {
+        format!("{pane:?}{}", self.words()[2])
     }
 
     /// A pane as part of a sentence: "magnitude plot".
-    pub(super) fn place(self, pane: Pane) -> &'static str {
-        match (self, pane) {
-            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Magnitude) => {
-                "magnitude plot of every condition"
-            }
-            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Magnitude) => {
-                "magnitude plot of a found model"
-            }
-            (Self::Response { place: ResponsePlace::EveryCondition, .. }, Pane::Phase) => {
-                "phase plot of every condition"
-            }
-            (Self::Response { place: ResponsePlace::FoundModel, .. }, Pane::Phase) => "phase plot of a found model",
-            (Self::Response { .. }, Pane::Magnitude) => "magnitude plot",
-            (Self::Response { .. }, Pane::Phase) => "phase plot",
-            (Self::Error { .. }, Pane::Magnitude) => "magnitude error plot",
-            (Self::Error { .. }, Pane::Phase) => "phase error plot",
-        }
+    pub(super) fn place(self, pane: Pane) -> String {
+        format!("{}{}", format!("{pane:?}").to_lowercase(), self.words()[3])
     }
 
     /// The unit that a pane is read in.
@@ -145,7 +121,7 @@ impl BodeQuantity<'_> {
 
     /// A drawn value of a pane in the unit that it is read in.
     pub(crate) fn shown_value(self, pane: Pane, value: f64) -> f64 {
-        self.unit(pane).of_drawn(value)
+        self.unit(pane).ticks().number(value)
     }
 
     /// What the numbers of a curve in a pane are, with the unit that they are drawn in.
@@ -211,17 +187,6 @@ impl ValueUnit {
         }
     }
 
-    /// A drawn value in this unit.
-    pub fn of_drawn(self, value: f64) -> f64 {
-        if self == Self::Ratio { db_to_ratio(value) } else { value }
-    }
-
-    /// The drawn value of one in this unit; nothing for a ratio that has no decibels.
-    pub fn to_drawn(self, value: f64) -> Option<f64> {
-        let drawn = if self == Self::Ratio { ratio_to_db(value) } else { value };
-        drawn.is_finite().then_some(drawn)
-    }
-
     /// A drawn value as a reader wants it: "2.9 dB", "−99°".
     pub fn readout(self, value: f64) -> String {
         match self {
@@ -239,37 +204,15 @@ impl ValueUnit {
         }
     }
 
-    /// Ticks as egui_plot asks for them.
-    pub(super) fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
-        move |input| {
-            let (bounds, per_point) = (input.bounds, input.base_step_size);
-            match self {
-                Self::Decibel | Self::Millisecond => Ladder::Decimal.marks(bounds, per_point, VERTICAL_TICK_GAP),
-                Self::Degree => Ladder::Degrees.marks(bounds, per_point, VERTICAL_TICK_GAP),
-                Self::Ratio => {
-                    let marks =
-                        logarithmic_marks((bounds.0 / DB_OF_DECADE, bounds.1 / DB_OF_DECADE), per_point / DB_OF_DECADE);
-                    let in_db = |mark: GridMark| GridMark {
-                        value: DB_OF_DECADE * mark.value,
-                        step_size: DB_OF_DECADE * mark.step_size,
-                    };
-                    marks.into_iter().map(in_db).collect()
-                }
-            }
-        }
-    }
-
-    /// The text of a tick.
-    pub(super) fn tick_text(self, mark: GridMark) -> String {
+    /// How its axis is told.
+    pub(super) fn ticks(self) -> Ticks {
         match self {
-            Self::Ratio => compact(db_to_ratio(mark.value)),
-            _ => tick_text(mark),
+            Self::Decibel | Self::Millisecond => Ticks::Decimal(VERTICAL_TICK_GAP),
+            Self::Degree => Ticks::Degrees,
+            Self::Ratio => Ticks::Ratio,
         }
     }
 }
-
-/// Decibels of a factor of ten.
-const DB_OF_DECADE: f64 = 20.0;
 
 /// `value` rounded to three significant digits.
 fn three_significant(value: f64) -> f64 {
@@ -286,12 +229,12 @@ mod tests {
 
     #[test]
     fn a_ratio_is_read_from_its_decibels_and_back() {
-        let drawn = ValueUnit::Ratio.to_drawn(2.0).unwrap();
+        let ticks = ValueUnit::Ratio.ticks();
+        let drawn = ticks.place(2.0);
         // 20 log10 2, and one rounding of each function.
         assert!((drawn - 6.020_599_913_279_624).abs() < 1e-12);
-        assert!((ValueUnit::Ratio.of_drawn(drawn) - 2.0).abs() < 1e-12);
-        assert_eq!(ValueUnit::Ratio.to_drawn(0.0), None);
-        assert_eq!(ValueUnit::Ratio.to_drawn(-1.0), None);
+        assert!((ticks.number(drawn) - 2.0).abs() < 1e-12);
+        assert!(!ticks.place(0.0).is_finite() && !ticks.place(-1.0).is_finite());
         assert_eq!(ValueUnit::Ratio.readout(drawn), "× 2");
     }
 
@@ -305,9 +248,9 @@ mod tests {
 
     #[test]
     fn ticks_of_ratios_are_round_ratios() {
-        let input = GridInput { bounds: (-20.0, 20.0), base_step_size: 40.0 / 300.0 };
-        let marks = ValueUnit::Ratio.spacer()(input);
-        let labels: Vec<String> = marks.into_iter().map(|mark| ValueUnit::Ratio.tick_text(mark)).collect();
+        let input = egui_plot::GridInput { bounds: (-20.0, 20.0), base_step_size: 40.0 / 300.0 };
+        let marks = ValueUnit::Ratio.ticks().spacer()(input);
+        let labels: Vec<String> = marks.into_iter().map(|mark| ValueUnit::Ratio.ticks().text(mark)).collect();
         for wanted in ["0.1", "0.2", "0.5", "1", "2", "5", "10"] {
             assert!(labels.iter().any(|label| label == wanted), "{wanted}: {labels:?}");
         }

@@ -5,11 +5,11 @@ use gdcm_core::dataset::Pair;
 use gdcm_core::study::Undefined;
 use gdcm_files::figure::noticed;
 
-use super::frequency::{Drawn, bode_options, carry_over, chips, condition_source, cursor_readout, error_curves};
+use super::frequency::{bode_options, condition_source, error_curves, frequency_plot_ui};
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeQuantity, BodeScene, PhaseErrorUnit, bode_ui};
+use crate::view::plot::{BodeQuantity, BodeScene, PhaseErrorUnit};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -23,11 +23,7 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         condition_source(state).map(|source| source.error_references(pair, &options, &curves)).unwrap_or_default();
     let strips = noticed(&curves, &options);
     let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
-    let display = &state.display.curves;
-    let quantity = BodeQuantity::Error { phase: display.phase_error };
-    let at = (display.cursor, display.pinned.as_slice());
-    let readout = if display.lists_values { cursor_readout(&curves, quantity, state.display.unit, at) } else { None };
-    let chips: Vec<_> = chips(state).into_iter().map(|(chip, _)| chip).collect();
+    let quantity = BodeQuantity::Error { phase: options.phase_error };
     let band = state.study.settings.band;
     let grid = state.curves().map(|curves| curves.grid.omega());
     let scene = BodeScene {
@@ -35,18 +31,10 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         rules: &rules,
         strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
-        cursor: display.cursor,
-        pinned: &display.pinned,
-        readout: readout.as_ref(),
-        hidden_roles: &display.hidden_roles,
-        chips: &chips,
-        unit: state.display.unit,
-        stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(&message),
         ..BodeScene::of(&title, &curves, (band.min(), band.max()))
     };
-    let events = bode_ui(ui, &scene, &mut view, palette);
-    carry_over(state, Drawn { quantity, curves: &curves, view: &view, events }, commands);
+    frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
     state.display.bode.share_frequencies(&view);
     state.display.error = view;
     state.display.drawn_errors = curves;

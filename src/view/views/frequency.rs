@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
+use egui::Ui;
 use gdcm_core::dataset::{Band, ModelId, Pair};
 use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
@@ -11,29 +12,43 @@ use gdcm_files::figure::{BodeOptions, ConditionSource};
 
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
+use crate::view::palette::Palette;
 use crate::view::plot::{
-    BodeCurve, BodeEvent, BodeQuantity, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout, ReadoutRow,
-    Role, decimals,
+    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout,
+    ReadoutRow, Role, bode_ui, decimals,
 };
 use crate::view::state::State;
 
-/// A plot over frequency after it was drawn.
-pub(super) struct Drawn<'a> {
-    pub(super) quantity: BodeQuantity<'a>,
-    pub(super) curves: &'a [BodeCurve],
-    pub(super) view: &'a BodeView,
-    pub(super) events: Vec<BodeEvent>,
-}
-
-/// Pushes what was done in a plot, and what the pointer means in it.
-pub(super) fn carry_over(state: &State, drawn: Drawn<'_>, commands: &mut Vec<Command>) {
-    let Drawn { quantity, curves, view, events } = drawn;
-    for event in events {
+/// Draws a plot over frequency of the condition shown with what all of them have in common: cursors, what every role has there, chips.
+/// Pushes what was done in it, and what the pointer means.
+pub(super) fn frequency_plot_ui(
+    ui: &mut Ui,
+    state: &State,
+    (scene, view): (BodeScene<'_>, &mut BodeView),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let display = &state.display.curves;
+    let (quantity, curves, unit) = (scene.quantity, scene.curves, state.display.unit);
+    let at = (display.cursor, display.pinned.as_slice());
+    let readout = if display.lists_values { cursor_readout(curves, quantity, unit, at) } else { None };
+    let (chips, of_chips): (Vec<Chip>, Vec<Command>) = chips(state).into_iter().unzip();
+    let scene = BodeScene {
+        cursor: display.cursor,
+        pinned: &display.pinned,
+        readout: readout.as_ref(),
+        hidden_roles: &display.hidden_roles,
+        chips: &chips,
+        unit,
+        stale: state.results.is_stale(ui.input(|input| input.time)),
+        ..scene
+    };
+    for event in bode_ui(ui, &scene, view, palette) {
         commands.extend(match event {
             BodeEvent::Wished(id, CurveWish::CopyValues) => {
                 curves.iter().find(|curve| curve.id == id).map(|curve| Command::CopyText(values(quantity, curve)))
             }
-            BodeEvent::ChipClicked(index) => chips(state).into_iter().nth(index).map(|(_, command)| command),
+            BodeEvent::ChipClicked(index) => of_chips.get(index).cloned(),
             event => command_of(state, event),
         });
     }
@@ -109,7 +124,7 @@ fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
 }
 
 /// What holds for the plots over frequency now, with the command that ends it or acts on it.
-pub(super) fn chips(state: &State) -> Vec<(Chip, Command)> {
+fn chips(state: &State) -> Vec<(Chip, Command)> {
     let chip = |text: String, hint: &str, command: Command| (Chip { text, hint: hint.to_owned() }, command);
     let mut chips = Vec::new();
     if let Some(id) = &state.display.isolated {

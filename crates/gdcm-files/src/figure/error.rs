@@ -52,7 +52,8 @@ impl ConditionSource<'_> {
             drawn.extend(of_reference.map(|model| self.curve_of(model).with(&cache.omega, &cache.zero, &cache.zero)));
         }
         for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
-            if let Some(error) = cache.corrected(&curve.id, model, correction) {
+            if let Some((shape, _)) = &cache.errors[model] {
+                let error = shape.drawn(correction, &cache.omega, unit);
                 drawn.push(curve.with(&cache.omega, &error.magnitude_db, &error.phase));
             }
         }
@@ -167,8 +168,6 @@ pub struct ErrorCache {
     zero: Arc<[f64]>,
     /// In the order of the physics models.
     errors: Vec<Option<(ErrorShape, DrawnError)>>,
-    /// Of each corrected curve: what it was made with, and what is drawn of it.
-    corrected: Vec<(CurveId, usize, GainDelay, DrawnError)>,
 }
 
 impl ErrorCache {
@@ -178,7 +177,6 @@ impl ErrorCache {
         }
         self.omega = made.omega();
         self.zero = vec![0.0; self.omega.len()].into();
-        self.corrected.clear();
         let reference = made.polar(&made.curves.identified[made.reference]);
         let coherence_weights = made.coherence_weights(&self.omega);
         let error = |response: &Arc<FrequencyResponse>| {
@@ -189,18 +187,6 @@ impl ErrorCache {
         };
         self.errors = made.curves.physics.iter().map(error).collect();
         self.made = Some(made);
-    }
-
-    fn corrected(&mut self, id: &CurveId, model: usize, correction: GainDelay) -> Option<DrawnError> {
-        let same =
-            |made: &&(CurveId, usize, GainDelay, DrawnError)| (&made.0, made.1, made.2) == (id, model, correction);
-        if let Some((.., drawn)) = self.corrected.iter().find(same) {
-            return Some(drawn.clone());
-        }
-        let drawn = self.errors[model].as_ref()?.0.drawn(correction, &self.omega, self.made.as_ref()?.unit);
-        self.corrected.retain(|(of, ..)| of != id);
-        self.corrected.push((id.clone(), model, correction, drawn.clone()));
-        Some(drawn)
     }
 }
 

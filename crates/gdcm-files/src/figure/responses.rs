@@ -1,6 +1,5 @@
 //! The curves of responses over frequency: of every model of a condition, and of one model of every condition.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, Dataset, ModelBands, ModelId, Pair};
@@ -24,9 +23,9 @@ impl ConditionSource<'_> {
     pub fn response_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ResponseCache) -> Vec<BodeCurve> {
         cache.refresh(self.curves, pair, self.reference());
         let mut drawn = Vec::new();
-        let mut draw = |cache: &mut ResponseCache, curve: BodeCurve, shape: ResponseShape| {
+        let mut draw = |cache: &ResponseCache, curve: BodeCurve, shape: ResponseShape| {
             let turns = options.turns.get(&(self.id(), pair, curve.id.clone())).copied().unwrap_or(0);
-            let phase_deg = cache.presented(&curve.id, &shape.phase_deg, Presentation { unit: options.phase, turns });
+            let phase_deg = presented(&shape.phase_deg, options.phase, turns);
             drawn.push(moved_by_hand(curve, turns).with(&cache.omega, &shape.magnitude_db, &phase_deg));
         };
         for kind in BundleKind::BOTH {
@@ -36,7 +35,7 @@ impl ConditionSource<'_> {
             }
         }
         for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
-            let shape = cache.corrected(&curve.id, Treatment { model, correction });
+            let shape = cache.physics[model].corrected(&cache.omega, correction);
             draw(cache, curve, shape);
         }
         drawn
@@ -61,46 +60,16 @@ pub struct ResponseCache {
     omega: Arc<[f64]>,
     physics: Vec<ResponseShape>,
     identified: Vec<ResponseShape>,
-    /// Of each corrected curve: what it was made with, and its shape.
-    corrected: BTreeMap<CurveId, (Treatment, ResponseShape)>,
-    /// Phases that are not drawn as they are, by their curves.
-    presented: BTreeMap<CurveId, PresentedPhase>,
 }
 
-/// A phase that is not drawn as it is.
-#[derive(Clone, Debug)]
-struct PresentedPhase {
-    /// The phase as it is \[deg\].
-    phase_deg: Arc<[f64]>,
-    how: Presentation,
-    /// What is drawn of it \[deg\].
-    drawn_deg: Arc<[f64]>,
-}
-
-/// How a phase is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Presentation {
-    unit: PhaseUnit,
-    /// Whole turns up.
-    turns: i32,
-}
-
-impl Presentation {
-    /// The continuous phase \[deg\] as it is drawn. A wrapped one has a gap where it jumps, in place of a line from edge to edge.
-    fn of(self, phase_deg: &[f64]) -> Arc<[f64]> {
-        if self.unit == PhaseUnit::Unwrapped {
-            return phase_deg.iter().map(|phase| phase + 360.0 * f64::from(self.turns)).collect();
-        }
-        wrapped_deg(phase_deg).into()
+/// A continuous phase \[deg\] as it is drawn, so many turns up. A wrapped one has a gap where it jumps, in place of a line from edge to
+/// edge.
+fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> {
+    match (unit, turns) {
+        (PhaseUnit::Unwrapped, 0) => Arc::clone(phase_deg),
+        (PhaseUnit::Unwrapped, _) => phase_deg.iter().map(|phase| phase + 360.0 * f64::from(turns)).collect(),
+        (PhaseUnit::Wrapped, _) => wrapped_deg(phase_deg).into(),
     }
-}
-
-/// What a corrected curve is made with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Treatment {
-    /// Index of the physics model.
-    model: usize,
-    correction: GainDelay,
 }
 
 impl ResponseCache {
@@ -122,36 +91,7 @@ impl ResponseCache {
         self.physics = shapes(BundleKind::Physics);
         self.identified = shapes(BundleKind::Identified);
         self.omega = curves.grid.omega().into();
-        self.corrected.clear();
-        self.presented.clear();
         self.made_of = Some((Arc::clone(curves), pair, reference));
-    }
-
-    /// The corrected shape of the curve `id`: the same one until it is made with something else.
-    fn corrected(&mut self, id: &CurveId, treatment: Treatment) -> ResponseShape {
-        match self.corrected.get(id) {
-            Some((with, shape)) if *with == treatment => shape.clone(),
-            _ => {
-                let shape = self.physics[treatment.model].corrected(&self.omega, treatment.correction);
-                self.corrected.insert(id.clone(), (treatment, shape.clone()));
-                shape
-            }
-        }
-    }
-
-    /// The phase of the curve `id` as it is drawn: the same one until something of it changes.
-    fn presented(&mut self, id: &CurveId, phase_deg: &Arc<[f64]>, how: Presentation) -> Arc<[f64]> {
-        if how == (Presentation { unit: PhaseUnit::Unwrapped, turns: 0 }) {
-            return Arc::clone(phase_deg);
-        }
-        let is_same = |before: &&PresentedPhase| Arc::ptr_eq(&before.phase_deg, phase_deg) && before.how == how;
-        if let Some(before) = self.presented.get(id).filter(is_same) {
-            return Arc::clone(&before.drawn_deg);
-        }
-        let drawn_deg = how.of(phase_deg);
-        let presented = PresentedPhase { phase_deg: Arc::clone(phase_deg), how, drawn_deg: Arc::clone(&drawn_deg) };
-        self.presented.insert(id.clone(), presented);
-        drawn_deg
     }
 
     fn of_bundle(&self, kind: BundleKind) -> &[ResponseShape] {
@@ -272,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_wrapped_phase_stays_within_half_a_turn_and_has_a_gap_where_it_jumps() {
-        let wrapped = Presentation { unit: PhaseUnit::Wrapped, turns: 0 }.of(&[-100.0, -170.0, -190.0, -200.0]);
+        let wrapped = presented(&vec![-100.0, -170.0, -190.0, -200.0].into(), PhaseUnit::Wrapped, 0);
         // Two roundings of angles below 360.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
@@ -280,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_turn_by_hand_moves_a_phase_by_360_degrees() {
-        let up = Presentation { unit: PhaseUnit::Unwrapped, turns: 1 }.of(&[-100.0, f64::NAN]);
+        let up = presented(&vec![-100.0, f64::NAN].into(), PhaseUnit::Unwrapped, 1);
         assert!(up[0] == 260.0 && up[1].is_nan());
     }
 

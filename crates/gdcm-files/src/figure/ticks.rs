@@ -9,12 +9,28 @@ const DEGREE_STEPS: [f64; 13] = [5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0,
 
 /// A place on an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub struct Tick {
     /// The value there.
-    pub(super) value: f64,
+    pub value: f64,
     /// The text beside it; none beside a minor tick.
-    pub(super) label: Option<String>,
+    pub label: Option<String>,
 }
+
+/// How close the ticks of an axis may be \[pt\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickGaps {
+    /// From label to label.
+    pub labels: f64,
+    /// From label to label where equal steps take the place of parts of a decade.
+    pub equal_steps: f64,
+    /// From line to line of a decade.
+    pub lines: f64,
+}
+
+/// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
+const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
+/// Least distance between two labels where all nine of a decade have one \[pt\]: a row of many close numbers is hard to read.
+const NINE_LABELS_GAP: f64 = 44.0;
 
 /// The ticks of `axis` where `range` is shown on `length_pt`, with labels at least `gap_pt` apart.
 pub(super) fn ticks(axis: &Axis, range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
@@ -24,10 +40,16 @@ pub(super) fn ticks(axis: &Axis, range: Range, length_pt: f64, gap_pt: f64) -> V
         let every = (gap_pt / apart).ceil().max(1.0) as usize;
         return shown.into_iter().step_by(every).map(|(at, name)| labelled(*at, name.clone())).collect();
     }
-    match axis.scale {
-        Scale::Linear => equal_steps(range, step_above(gap_pt * range.width() / length_pt)),
-        Scale::Degrees => equal_steps(range, degree_step(gap_pt * range.width() / length_pt)),
-        Scale::Logarithmic => decades(range, length_pt, gap_pt),
+    ticks_of(axis.scale, range, length_pt, TickGaps { labels: gap_pt, equal_steps: gap_pt, lines: 0.0 })
+}
+
+/// The ticks of an axis of numbers where `range` is shown on `length_pt`.
+pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
+    let least = gaps.labels * range.width() / length_pt;
+    match scale {
+        Scale::Linear => equal_steps(range, step_above(least)),
+        Scale::Degrees => equal_steps(range, degree_step(least)),
+        Scale::Logarithmic => decades(range, length_pt, gaps),
     }
 }
 
@@ -63,19 +85,23 @@ pub fn step_above(least: f64) -> f64 {
 
 /// Ticks at 1 to 9 of each decade, labelled at 1, 2 and 5 or at the decades, whichever has room; of a small part of a decade, equal
 /// steps.
-fn decades(range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
+fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let (low, high) = (range.min.log10(), range.max.log10());
     let decade_pt = length_pt / (high - low);
-    let has_two_and_five = decade_pt * 2f64.log10() >= gap_pt;
-    let every = (gap_pt / decade_pt).ceil().max(1.0) as i64;
-    let slack = 1e-9 * (high - low);
+    let has_two_and_five = decade_pt * 2f64.log10() >= gaps.labels;
+    let has_nine = decade_pt * NINE_TO_TEN >= NINE_LABELS_GAP;
+    let has_lines = decade_pt * NINE_TO_TEN >= gaps.lines;
+    let every = (gaps.labels / decade_pt).ceil().max(1.0) as i64;
+    let slack = 1e-9 * (1.0 + high - low);
     let is_labelled = |mantissa: u8, exponent: i64| match mantissa {
         1 => exponent.rem_euclid(every) == 0,
         2 | 5 => has_two_and_five,
-        _ => false,
+        _ => has_nine,
     };
+    let is_drawn = |mantissa: u8, exponent: i64| has_lines || mantissa == 1 || is_labelled(mantissa, exponent);
     let all = (low.floor() as i64..=high.floor() as i64)
         .flat_map(|exponent| (1..=9u8).map(move |mantissa| (mantissa, exponent)))
+        .filter(|(mantissa, exponent)| is_drawn(*mantissa, *exponent))
         .map(|(mantissa, exponent)| (mantissa, exponent, f64::from(mantissa) * 10f64.powi(exponent as i32)))
         .filter(|(.., value)| (low - slack..=high + slack).contains(&value.log10()));
     let ticks: Vec<Tick> = all
@@ -86,7 +112,7 @@ fn decades(range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
         .collect();
     let count = ticks.iter().filter(|tick| tick.label.is_some()).count();
     // The upper end is where equal steps are closest.
-    let linear = equal_steps(range, step_above(gap_pt * range.max * std::f64::consts::LN_10 / decade_pt));
+    let linear = equal_steps(range, step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt));
     if high - low < LINEAR_BELOW && linear.len() > count { linear } else { ticks }
 }
 

@@ -8,7 +8,7 @@ use crate::view::View;
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies};
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
@@ -126,6 +126,7 @@ impl GdcmApp {
             // A record that is read again takes its place.
             records.rows.retain(|old| rows.iter().all(|new| new.table.name != old.table.name));
             records.rows.extend(rows);
+            leave_out_copies(&mut records.rows);
             records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
             records.changed = true;
         }

@@ -1,6 +1,7 @@
 //! Where in a dataset identified models go.
 
 use gdcm_core::message_text::sanitized;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -45,8 +46,22 @@ impl Destination {
 
     /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
     pub(super) fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<Group>, Failure> {
-        if self.condition.is_some() {
-            return Ok(vec![(self.condition, records)]);
+        if let Some(wanted) = self.condition {
+            let is_of = |record: &LaidOutRecord| record.guess.condition.is_none_or(|said| ConditionId(said) == wanted);
+            let count = records.len();
+            let (own, others): (Vec<_>, Vec<_>) = records.into_iter().partition(is_of);
+            if !others.is_empty() {
+                say_error(&format!(
+                    "caution: {} of {count} records left out: their names say condition {}, not {wanted}",
+                    others.len(),
+                    said_conditions(&others)
+                ));
+            }
+            if own.is_empty() {
+                let reason = format!("no record is left for condition {wanted}; rename what belongs to it");
+                return Err(Failure::Option { option: "--condition", reason });
+            }
+            return Ok(vec![(self.condition, own)]);
         }
         let mut groups: Vec<(ConditionId, Vec<LaidOutRecord>)> =
             self.dataset.conditions().iter().map(|condition| (condition.id(), Vec::new())).collect();
@@ -85,6 +100,12 @@ impl Destination {
         add_dataset(&self.dataset, &self.path, outputs)?;
         Ok(&self.path)
     }
+}
+
+/// The conditions that names of records say, as "3, 7".
+pub(super) fn said_conditions(records: &[LaidOutRecord]) -> String {
+    let said: BTreeSet<i64> = records.iter().filter_map(|record| record.guess.condition).collect();
+    said.iter().map(i64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 fn described(dataset: &Dataset, description: &str) -> Result<Dataset, Failure> {

@@ -13,8 +13,8 @@ use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::existing;
 use super::{
-    ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress, counted, hold_out,
-    laid_out, record_table, relative_entry, say, say_error,
+    ChannelConversion, ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress,
+    counted, hold_out, laid_out, record_table, relative_entry, said_conditions, say, say_error,
 };
 
 /// The file of what was found.
@@ -131,7 +131,15 @@ fn tasks(
     let preparation = preparation(channels, &arguments.delay)?;
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
-        None => vec![(None, records)],
+        None => {
+            let conditions = said_conditions(&records);
+            if conditions.contains(',') {
+                say_error(&format!(
+                    "caution: the names of the records say conditions {conditions}: all are fitted together"
+                ));
+            }
+            vec![(None, records)]
+        }
     };
     groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band)).collect()
 }
@@ -155,14 +163,36 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
     )
 }
 
-/// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+/// The channels asked for, with what is said of their samples.
 fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
+    let mut channels = named_channels(arguments, destination)?;
+    let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
+    for (option, ChannelConversion { channel, said }) in
+        units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
+    {
+        let refused = |reason: String| Err(Failure::Option { option, reason });
+        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
+            return refused(format!("{channel} is none of the channels"));
+        }
+        if channels.said.insert(channel.clone(), said).is_some() {
+            return refused(format!("{channel} has a unit or a factor already"));
+        }
+    }
+    Ok(channels)
+}
+
+/// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
     let Some(destination) = destination else {
         let rules = |list: &Option<ChannelList>| {
             let channels = list.iter().flat_map(|list| &list.channels);
             channels.map(|(name, column)| with_column(ChannelRule::named(name.clone()), column.as_ref())).collect()
         };
-        return Ok(RecordChannels { inputs: rules(&arguments.inputs), outputs: rules(&arguments.outputs) });
+        return Ok(RecordChannels {
+            inputs: rules(&arguments.inputs),
+            outputs: rules(&arguments.outputs),
+            ..RecordChannels::default()
+        });
     };
     let mut channels = RecordChannels::of_dataset(&destination.dataset);
     for (option, list, rules) in [

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
+use gdcm_core::records::SaidConversion;
 use gdcm_core::study::OfferedModels;
 
 use super::real_number;
@@ -15,7 +16,7 @@ pub struct IdentifyArguments {
     /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN; without it, those of the dataset.
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, in the same way.
@@ -43,6 +44,12 @@ pub struct IdentifyArguments {
     /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
+    /// The unit of a channel's samples, whatever their file says; may be repeated.
+    #[arg(long, value_name = "CHANNEL=UNIT", value_parser = said_unit)]
+    pub unit: Vec<ChannelConversion>,
+    /// What a channel's samples are multiplied by, negative where the sign is the other one; may be repeated.
+    #[arg(long, value_name = "CHANNEL=X", value_parser = said_factor, allow_hyphen_values = true)]
+    pub factor: Vec<ChannelConversion>,
     /// Dataset that the models are put into; it is written anew, beside identified.json.
     #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
@@ -103,7 +110,7 @@ impl FromStr for ChannelList {
     fn from_str(text: &str) -> Result<Self, String> {
         let channel = |words: &str| {
             let (name, column) = match words.split_once('=') {
-                Some((name, column)) => (name.trim(), Some(column.trim())),
+                Some((name, column)) => (name.trim(), Some(column.trim().trim_matches('"'))),
                 None => (words.trim(), None),
             };
             if name.is_empty() || column.is_some_and(str::is_empty) {
@@ -111,12 +118,50 @@ impl FromStr for ChannelList {
             }
             Ok((name.to_owned(), column.map(str::to_owned)))
         };
-        let channels: Vec<_> = text.split(',').map(channel).collect::<Result<_, _>>()?;
+        let channels: Vec<_> = split_outside_quotes(text).into_iter().map(channel).collect::<Result<_, _>>()?;
         match channels.iter().enumerate().find(|(at, (name, _))| channels[..*at].iter().any(|(other, _)| other == name))
         {
             Some((_, (name, _))) => Err(format!("{name} stands twice")),
             None => Ok(Self { channels }),
         }
+    }
+}
+
+/// The parts of a list between commas that stand in no quotation marks.
+fn split_outside_quotes(text: &str) -> Vec<&str> {
+    let mut quoted = false;
+    let is_comma = |c: char| {
+        quoted ^= c == '"';
+        c == ',' && !quoted
+    };
+    text.split(is_comma).collect()
+}
+
+/// What is said of the samples of a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelConversion {
+    /// The channel.
+    pub channel: String,
+    /// Its unit or factor.
+    pub said: SaidConversion,
+}
+
+fn said_unit(text: &str) -> Result<ChannelConversion, String> {
+    match text.split_once('=').map(|(channel, unit)| (channel.trim(), unit.trim())) {
+        Some((channel, unit)) if !channel.is_empty() && !unit.is_empty() => {
+            Ok(ChannelConversion { channel: channel.to_owned(), said: SaidConversion::Unit(unit.to_owned()) })
+        }
+        _ => Err(format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\"")),
+    }
+}
+
+fn said_factor(text: &str) -> Result<ChannelConversion, String> {
+    let said = text.split_once('=').and_then(|(channel, factor)| Some((channel.trim(), factor.trim().parse().ok()?)));
+    match said.filter(|(channel, factor): &(&str, f64)| !channel.is_empty() && factor.is_finite() && *factor != 0.0) {
+        Some((channel, factor)) => {
+            Ok(ChannelConversion { channel: channel.to_owned(), said: SaidConversion::Factor(factor) })
+        }
+        None => Err(format!("expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\"")),
     }
 }
 
@@ -153,8 +198,19 @@ mod tests {
     fn channels_may_say_their_columns() {
         let list: ChannelList = "LON, P=roll rate".parse().unwrap();
         assert_eq!(list.channels, [("LON".to_owned(), None), ("P".to_owned(), Some("roll rate".to_owned()))]);
+        let list: ChannelList = "LON=\"elev, yoke\",LAT=#30".parse().unwrap();
+        let columns: Vec<&str> = list.channels.iter().filter_map(|(_, column)| column.as_deref()).collect();
+        assert_eq!(columns, ["elev, yoke", "#30"]);
         assert!("".parse::<ChannelList>().is_err() && "P=".parse::<ChannelList>().is_err());
         assert_eq!("P,Q,P".parse::<ChannelList>().unwrap_err(), "P stands twice");
+    }
+
+    #[test]
+    fn a_unit_or_a_factor_is_of_a_channel() {
+        assert_eq!(said_unit("P = rad/s").unwrap().said, SaidConversion::Unit("rad/s".into()));
+        assert_eq!(said_factor("NZ=-1").unwrap().said, SaidConversion::Factor(-1.0));
+        assert!(["P", "P=", "=1"].iter().all(|wrong| said_unit(wrong).is_err()));
+        assert!(["P", "P=x", "P=0", "P=NaN", "=1"].iter().all(|wrong| said_factor(wrong).is_err()));
     }
 
     #[test]

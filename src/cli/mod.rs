@@ -30,7 +30,7 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_files::{Existing, Opened, load_any, open_study_of, write_example};
 
 use arguments::{Arguments, real_number, whole_number};
-use destination::{Destination, Group};
+use destination::{Destination, Group, said_conditions};
 use failure::Failure;
 use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
@@ -44,7 +44,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
-pub use identify_arguments::{ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
+pub use identify_arguments::{ChannelConversion, ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
 
 /// What the command line asks for.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::dataset::ConditionRecord;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies};
 use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
@@ -38,6 +38,12 @@ pub(super) fn laid_out(
         let name = sanitized(&record.table.name);
         record.problems.iter().for_each(|of| say_error(&format!("{name}: {}", sanitized(&of.to_string()))));
     }
+    leave_out_copies(&mut records);
+    for copy in records.iter().filter(|record| !record.used) {
+        let why = copy.cautions.last().map(ToString::to_string).unwrap_or_default();
+        say_error(&format!("{}: caution: {}", sanitized(&copy.table.name), sanitized(&why)));
+    }
+    records.retain(|record| record.used);
     let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
     if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok(records) }
 }

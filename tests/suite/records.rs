@@ -116,6 +116,11 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
         &["--delay: X is none of the channels"],
     );
     refused(&all("sweep_1.csv", &["--delay", "P"]), &["--delay", "expected CHANNEL=SECONDS"]);
+    refused(&all("sweep_1.csv", &["--factor", "X=2"]), &["--factor: X is none of the channels"]);
+    refused(
+        &all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]),
+        &["--factor: P has a unit or a factor already"],
+    );
     refused(&all("missing.csv", &[]), &["missing.csv: there is no such file"]);
     refused(
         &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
@@ -140,6 +145,18 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     refused(
         &["cond7_validation.csv", "--into", "small.json", "--every-condition"],
         &["--hold-out: condition 7: every record is held out"],
+    );
+    refused(
+        &["cond7_validation.csv", "--into", "small.json", "--condition", "10"],
+        &[
+            "caution: 1 of 1 records left out: their names say condition 7, not 10",
+            "--condition: no record is left for condition 10; rename what belongs to it",
+        ],
+    );
+    fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();
+    refused(
+        &all("sweep_1.csv", &["again.csv", "--hold-out", "sweep_1.csv"]),
+        &["its samples are those of ", "left out, for evidence counts once", "--hold-out: every record is held out"],
     );
 }
 

@@ -228,7 +228,8 @@ mod tests {
 
     fn written(cautions: &[String]) -> Vec<u8> {
         let rule = |name: &str, unit: &str| ChannelRule { unit: unit.into(), ..ChannelRule::named(name) };
-        let channels = RecordChannels { inputs: vec![rule("LON", "%")], outputs: vec![rule("Q", "deg/s")] };
+        let (inputs, outputs) = (vec![rule("LON", "%")], vec![rule("Q", "deg/s")]);
+        let channels = RecordChannels { inputs, outputs, ..RecordChannels::default() };
         let record = ConditionRecord { used_s: vec![[0.0, 60.0]], ..ConditionRecord::new("LON 1", "lon_1.csv") };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("identified.json");

@@ -48,7 +48,14 @@ impl Canvas<'_> {
                         (Some(color), _) if points.len() > 4 => self.fill_between(&points, self.palette.color(*color)),
                         (Some(color), stroke) if *closed => {
                             let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
-                            self.painter.add(Shape::convex_polygon(points, self.palette.color(*color), stroke));
+                            let bounds = Rect::from_points(&points);
+                            // An outline that comes back on itself has no direction at its ends: it is the line that it looks like.
+                            match bounds.is_positive() {
+                                true => {
+                                    self.painter.add(Shape::convex_polygon(points, self.palette.color(*color), stroke))
+                                }
+                                false => self.painter.line_segment([bounds.min, bounds.max], stroke),
+                            };
                         }
                         (_, Some(line)) => self.line(points, *line),
                         _ => {}

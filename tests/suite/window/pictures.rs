@@ -82,7 +82,11 @@ fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
             mesh.vertices.iter().map(|at| Vertex::new(at.pos.into(), at.uv.into(), colour(at.color))).collect();
         let texture = known.get(&mesh.texture_id).copied();
         let mesh = Mesh { vertices: &vertices, indices: &mesh.indices, texture };
-        frame.mesh(mesh, ClipRect { min_x, min_y, max_x, max_y }).expect("a mesh of the window");
+        let clip = ClipRect { min_x, min_y, max_x, max_y };
+        if let Err(error) = frame.mesh(mesh, clip) {
+            let shown = View::ALL.into_iter().filter(|view| state(window).display.arrangement.is_shown(*view));
+            panic!("a mesh of {:?}: {error:?}", shown.collect::<Vec<View>>());
+        }
     }
     let pixels = &frame.surface().pixels;
     let average = |x: usize, y: usize, channel: usize| {

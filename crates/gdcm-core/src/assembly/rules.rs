@@ -275,7 +275,7 @@ impl PartialEq for NamePattern {
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> Vec<NamePattern> {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
-    let offset = |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
+    let offset = |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])d?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
     let texts = [
         r"(?:^|[/_ -])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
@@ -287,7 +287,7 @@ pub fn standard_patterns() -> Vec<NamePattern> {
         r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?[/_ -](?<weight>low|high)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<altitude>low|high)[_ ]?(?:alt|altitude)?(?:[/_ .#-]|$)".to_owned(),
         offset("roll|phi|bank", "roll_deg"),
-        offset("v|dv|speed|airspeed|tas|ias", "airspeed_kt"),
+        offset("v|speed|airspeed|tas|ias", "airspeed_kt"),
         offset("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
         offset("pitch|theta", "pitch_deg"),
         offset("beta|slip|sideslip", "sideslip_deg"),
@@ -318,6 +318,8 @@ mod tests {
         let row = read("c03_045kt_high/roll+5");
         assert_eq!((row.condition, row.airspeed_kt, row.altitude.as_deref()), (Some(3), Some(45.0), Some("high")));
         assert_eq!(row.perturbation.into_iter().collect::<Vec<_>>(), [("roll_deg".to_owned(), 5.0)]);
+        let offsets: Vec<f64> = read("dV+5_dROC+150_dPHI-5").perturbation.into_values().collect();
+        assert_eq!(offsets, [5.0, 150.0, -5.0], "airspeed_kt, rate_of_climb_fpm, roll_deg");
         let row = read("fc-12/120kt_low_heavy/V-10kt roc+150fpm");
         assert_eq!((row.condition, row.airspeed_kt, row.weight.as_deref()), (Some(12), Some(120.0), Some("heavy")));
         let offsets: Vec<f64> = row.perturbation.values().copied().collect();

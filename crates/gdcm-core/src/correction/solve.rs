@@ -1,7 +1,6 @@
 //! The solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex quadratic program.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 use nalgebra::{DMatrix, DVector};
 
 use super::*;
@@ -265,15 +264,8 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         free.iter().map(|&index| objective.upper[index]).chain(free.iter().map(|&index| -objective.lower[index]));
     let ends: Vec<f64> = ends.collect();
     let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
-    let failed = |reason: String| ProblemError::Program { reason };
-    let mut solver =
-        DefaultSolver::new(&quadratic, slope.as_slice(), &sides, &ends, &[NonnegativeConeT(2 * size)], settings)
-            .map_err(|error| failed(error.to_string()))?;
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved => Ok(solver.solution.x),
-        status => Err(failed(format!("{status:?}"))),
-    }
+    convex_program(&quadratic, slope.as_slice(), &sides, &ends, settings)
+        .map_err(|reason| ProblemError::Program { reason })
 }
 
 /// Curvature and slope at 0 of the objective over the free scales.

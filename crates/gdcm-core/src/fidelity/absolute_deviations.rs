@@ -1,8 +1,7 @@
 //! Linear fits of least absolute deviations, with weights that are not negative, by the vertices of the fit and the edges between
 //! them.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 use nalgebra::{DMatrix, DVector};
 
 /// Why there is no fit.
@@ -110,24 +109,17 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
     let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
     let b: Vec<f64> = y.iter().copied().chain(y.iter().map(|y| -y)).chain(vec![0.0; unknowns]).collect();
     let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
-    let failed = |status: String| FitError::NotSolved { status };
     // Close enough that the nearest vertex is an optimal one, or one edge from it.
-    let settings = DefaultSettingsBuilder::default()
-        .verbose(false)
-        .tol_gap_abs(1e-11)
-        .tol_gap_rel(1e-11)
-        .tol_feas(1e-11)
-        .max_iter(500)
-        .build()
-        .map_err(|error| failed(error.to_string()))?;
-    let p = CscMatrix::zeros((q.len(), q.len()));
-    let cones = [NonnegativeConeT(b.len())];
-    let mut solver = DefaultSolver::new(&p, &q, &a, &b, &cones, settings).map_err(|error| failed(error.to_string()))?;
-    solver.solve();
-    match solver.solution.status {
-        SolverStatus::Solved => Ok(solver.solution.x[..unknowns].to_vec()),
-        status => Err(failed(format!("{status:?}"))),
-    }
+    let settings = DefaultSettings {
+        verbose: false,
+        tol_gap_abs: 1e-11,
+        tol_gap_rel: 1e-11,
+        tol_feas: 1e-11,
+        max_iter: 500,
+        ..DefaultSettings::default()
+    };
+    let solution = convex_program(&CscMatrix::zeros((q.len(), q.len())), &q, &a, &b, settings);
+    solution.map(|x| x[..unknowns].to_vec()).map_err(|status| FitError::NotSolved { status })
 }
 
 /// A deviation or a weight below this is zero; the right-hand sides are scaled to at most 1.

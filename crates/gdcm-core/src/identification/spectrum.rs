@@ -2,10 +2,9 @@
 
 use super::*;
 use crate::executor::{Executor, each};
+use gdcm_numerics::{FourierPlanner, FourierTransform};
 use nalgebra::{Complex, DMatrix};
-use realfft::{RealFftPlanner, RealToComplex};
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// The lines of one segment (M14, 2): one column a line, one row a channel.
 ///
@@ -47,42 +46,35 @@ impl Spectrum {
 /// The lines of every segment up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the segments.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
-    let mut planner = RealFftPlanner::new();
-    let plans: Vec<_> = segments.iter().map(|segment| planner.plan_fft_forward(segment.inputs.nrows())).collect();
+    let mut planner = FourierPlanner::default();
+    let plans: Vec<_> = segments.iter().map(|segment| planner.plan(segment.inputs.nrows())).collect();
     each(executor, segments.iter().zip(plans), |(segment, plan)| spectrum(segment, highest, &plan))
 }
 
 /// The lines of one segment up to `highest`, by the transform `plan` of its length.
-fn spectrum(segment: &Segment, highest: f64, plan: &Arc<dyn RealToComplex<f64>>) -> Spectrum {
+fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
     let omega: Vec<f64> =
         (1..=below_nyquist).map(|k| TAU * k as f64 / duration_s).take_while(|&w| w <= highest).collect();
     let factor = segment.sample_time_s / duration_s.sqrt();
-    let inputs = transform(&segment.inputs, omega.len(), factor, plan.as_ref());
-    let outputs = transform(&segment.outputs, omega.len(), factor, plan.as_ref());
+    let inputs = transform(&segment.inputs, omega.len(), factor, plan);
+    let outputs = transform(&segment.outputs, omega.len(), factor, plan);
     Spectrum { record: segment.record, duration_s, omega, inputs, outputs }
 }
 
 /// SpectralLines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
-fn transform(
-    samples: &DMatrix<f64>,
-    lines: usize,
-    factor: f64,
-    plan: &dyn RealToComplex<f64>,
-) -> DMatrix<Complex<f64>> {
+fn transform(samples: &DMatrix<f64>, lines: usize, factor: f64, plan: &FourierTransform) -> DMatrix<Complex<f64>> {
     let mut transformed = DMatrix::zeros(samples.ncols(), lines);
     if lines == 0 {
         return transformed;
     }
-    let (mut input, mut output, mut scratch) = (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
     for (channel, column) in samples.column_iter().enumerate() {
         let mean = column.mean();
-        input.iter_mut().zip(&column).for_each(|(x, sample)| *x = sample - mean);
-        if plan.process_with_scratch(&mut input, &mut output, &mut scratch).is_ok() {
-            let row = transformed.row_mut(channel);
-            row.into_iter().zip(output.iter().skip(1)).for_each(|(y, line)| *y = line * factor);
-        }
+        let mut centred: Vec<f64> = column.iter().map(|sample| sample - mean).collect();
+        let spectrum = plan.of(&mut centred).unwrap_or_default();
+        let row = transformed.row_mut(channel);
+        row.into_iter().zip(spectrum.iter().skip(1)).for_each(|(y, line)| *y = line * factor);
     }
     transformed
 }

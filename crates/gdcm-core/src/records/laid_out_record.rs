@@ -132,3 +132,28 @@ mod tests {
         assert_eq!(guess("values.csv"), (RecordKind::Other, false, None, None));
     }
 }
+
+/// Leaves out each record whose samples are those of one before it, with a caution: evidence counts once, however often and under
+/// whatever names it is given. What the engineer said of a copy that was told before stands.
+pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
+    for index in 1..records.len() {
+        let (before, from) = records.split_at_mut(index);
+        let record = &mut from[0];
+        let Some(flight) = record.used_flight() else { continue };
+        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| same_samples(other, flight));
+        let Some(first) = before.iter().find(is_it) else { continue };
+        let caution = LayoutCaution::Copy { first: first.table.name.clone() };
+        if !record.cautions.contains(&caution) {
+            record.used = false;
+            record.cautions.push(caution);
+        }
+    }
+}
+
+/// Whether all samples are the same to the last bit; the clocks may differ.
+fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
+    let bits = |record: &FlightRecord| -> Vec<u64> {
+        record.inputs.iter().chain(&record.outputs).map(|sample| sample.to_bits()).collect()
+    };
+    (a.inputs.shape(), a.outputs.shape()) == (b.inputs.shape(), b.outputs.shape()) && bits(a) == bits(b)
+}

@@ -167,6 +167,12 @@ pub enum LayoutCaution {
         /// The other.
         second: String,
     },
+    /// A record is another under a second name.
+    #[error("its samples are those of {first}: left out, for evidence counts once")]
+    Copy {
+        /// The name of the other.
+        first: String,
+    },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
     Missing {

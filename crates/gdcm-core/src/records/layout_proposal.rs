@@ -43,10 +43,12 @@ impl RecordLayout {
             Some(TimeBase::Column { column, .. }) => Some(column),
             _ => None,
         };
-        let (inputs, outputs) = if table.named {
+        let is_addressed = |rules: &[ChannelRule]| rules.iter().any(|rule| !rule.aliases.is_empty());
+        let by_name = table.named || is_addressed(&channels.inputs) || is_addressed(&channels.outputs);
+        let (inputs, outputs) = if by_name {
             (
-                proposal.named(table, ("input", ChannelSide::Input), &channels.inputs, time_column),
-                proposal.named(table, ("output", ChannelSide::Output), &channels.outputs, time_column),
+                proposal.named(table, ("input", ChannelSide::Input), channels, time_column),
+                proposal.named(table, ("output", ChannelSide::Output), channels, time_column),
             )
         } else {
             proposal.in_order(table, channels, time_column)
@@ -99,9 +101,10 @@ impl LayoutProposal {
         &mut self,
         table: &RecordTable,
         (side, of_file): (&'static str, ChannelSide),
-        rules: &[ChannelRule],
+        channels: &RecordChannels,
         time: Option<usize>,
     ) -> Vec<Option<ColumnUse>> {
+        let rules = if of_file == ChannelSide::Input { &channels.inputs } else { &channels.outputs };
         let free = |column: &usize| Some(*column) != time;
         let candidates: Vec<Vec<usize>> =
             rules.iter().map(|rule| candidates(table, rule, of_file).into_iter().filter(free).collect()).collect();
@@ -110,13 +113,13 @@ impl LayoutProposal {
         if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty() {
             self.notes
                 .push(format!("the file has as many {side}s under other names ({}): taken in order", rules.len()));
-            return rules.iter().zip(of_side).map(|(rule, column)| self.used(table, rule, column)).collect();
+            return rules.iter().zip(of_side).map(|(rule, column)| self.used(table, channels, rule, column)).collect();
         }
         let mut uses = Vec::with_capacity(rules.len());
         for (rule, candidates) in rules.iter().zip(candidates) {
             let channel = rule.name.clone();
             uses.push(match candidates.as_slice() {
-                [column] => self.used(table, rule, *column),
+                [column] => self.used(table, channels, rule, *column),
                 [] => {
                     self.problems.push(LayoutProblem::NoColumn { side, channel, found: table.column_names() });
                     None
@@ -148,15 +151,45 @@ impl LayoutProposal {
         self.notes.push("columns without names: taken in order, inputs before outputs".to_owned());
         let (inputs, outputs) = rest.split_at(m);
         let mut of = |rules: &[ChannelRule], columns: &[usize]| -> Vec<Option<ColumnUse>> {
-            rules.iter().zip(columns).map(|(rule, column)| self.used(table, rule, *column)).collect()
+            rules.iter().zip(columns).map(|(rule, column)| self.used(table, channels, rule, *column)).collect()
         };
         (of(&channels.inputs, inputs), of(&channels.outputs, outputs))
     }
 
+    /// The column with its factor, turned where a mark before its name says so, and in words.
+    fn used(
+        &mut self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+        rule: &ChannelRule,
+        column: usize,
+    ) -> Option<ColumnUse> {
+        let used = self.converted(table, channels, rule, column)?;
+        if !rule.aliases.iter().any(|alias| unmarked(table, alias) != alias) {
+            return Some(used);
+        }
+        self.notes.push(format!("{}: the sign of column {} is turned, as asked", rule.name, table.quoted(column)));
+        Some(ColumnUse { factor: -used.factor, ..used })
+    }
+
     /// The column with the factor from the file's unit to the channel's, and in words.
-    fn used(&mut self, table: &RecordTable, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
+    fn converted(
+        &mut self,
+        table: &RecordTable,
+        channels: &RecordChannels,
+        rule: &ChannelRule,
+        column: usize,
+    ) -> Option<ColumnUse> {
         let quoted = table.quoted(column);
-        let said = table.columns[column].unit.as_deref().filter(|unit| !unit.trim().is_empty());
+        let of_file = table.columns[column].unit.as_deref().filter(|unit| !unit.trim().is_empty());
+        let said = match channels.said.get(&rule.name) {
+            Some(SaidConversion::Factor(factor)) => {
+                self.notes.push(format!("{}: column {quoted}, × {} as asked", rule.name, number(*factor)));
+                return Some(ColumnUse { column, factor: *factor });
+            }
+            Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
+            None => of_file,
+        };
         let Some(from) = said.or(rule.unit_in_files.as_deref()).filter(|_| !rule.unit.is_empty()) else {
             let unit = said.map(|unit| format!(", in {unit}")).unwrap_or_default();
             self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
@@ -176,21 +209,38 @@ impl LayoutProposal {
     }
 }
 
+/// The name of a column that the engineer says without the mark that turns its sign: "-az" is "az", unless a column is called that.
+fn unmarked<'a>(table: &RecordTable, alias: &'a str) -> &'a str {
+    alias.strip_prefix('-').filter(|_| table.find(alias).is_none()).unwrap_or(alias)
+}
+
 /// The columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
         (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
     };
-    let own = std::slice::from_ref(&rule.name);
-    let names = if rule.aliases.is_empty() { own } else { &rule.aliases };
-    let mut found = named(&|name| names.iter().any(|wanted| wanted == name));
+    // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
+    let aliases: Vec<&str> = rule.aliases.iter().map(|alias| unmarked(table, alias)).collect();
+    let mut found = named(&|name| aliases.contains(&name));
     if found.is_empty() {
-        // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
-        found = named(&|name| rule.aliases.iter().any(|wanted| folded_name(name) == folded_name(wanted)));
+        found = aliases.iter().filter_map(|alias| table.find(alias)).collect();
+    }
+    if found.is_empty() {
+        found = named(&|name| aliases.iter().any(|wanted| folded_name(name) == folded_name(wanted)));
+    }
+    if found.is_empty() && aliases.iter().any(|alias| alias.starts_with('#')) {
+        return found;
+    }
+    let names = if aliases.is_empty() { vec![rule.name.as_str()] } else { aliases.clone() };
+    if aliases.is_empty() {
+        found = named(&|name| name == rule.name);
     }
     if found.is_empty() {
         found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));
+    }
+    if aliases.is_empty() {
+        found.retain(|&column| !is_position(table, column, rule));
     }
     if found.len() > 1 {
         let fits = |column: &usize| {
@@ -203,4 +253,37 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
         }
     }
     found
+}
+
+/// Whether a column is a latitude or a longitude, of the same names as sticks: an angle that hardly changes, by its unit or, where
+/// the file says none and the channel's very name is another, by both of them standing nearly still.
+fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
+    /// A minute at 140 kt is 0.04 degrees.
+    const MOST_DEG: f64 = 0.5;
+    /// Of its greatest value.
+    const MOST_CHANGE: f64 = 0.02;
+    let is_called = |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());
+    let stands = |column: &RecordColumn, factor: f64| {
+        column.range().is_some_and(|(least, most)| {
+            (most - least) * factor < MOST_DEG && least.abs().max(most.abs()) * factor <= 180.0
+        })
+    };
+    let own = &table.columns[column];
+    let (latitude, longitude) = (["lat"], ["lon", "long", "lng"]);
+    if !is_called(own, &latitude) && !is_called(own, &longitude) {
+        return false;
+    }
+    match own.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
+        Some(unit) => conversion_factor(unit, "deg").is_some_and(|factor| stands(own, factor)),
+        None if own.name == rule.name => false,
+        None => {
+            let hardly = |names: &[&str]| {
+                table.columns.iter().any(|column| {
+                    let change = column.range().map(|(least, most)| (most - least) / least.abs().max(most.abs()));
+                    is_called(column, names) && stands(column, 1.0) && change.is_some_and(|change| change < MOST_CHANGE)
+                })
+            };
+            hardly(&latitude) && hardly(&longitude)
+        }
+    }
 }

@@ -12,6 +12,7 @@ fn channels() -> RecordChannels {
     RecordChannels {
         inputs: vec![rule("LON", "%"), rule("LAT", "%")],
         outputs: vec![rule("P", "deg/s"), rule("NZ", "m/s²")],
+        ..RecordChannels::default()
     }
 }
 
@@ -196,7 +197,7 @@ fn inputs_and_outputs_that_the_file_tells_apart_are_taken_in_order() {
 
 #[test]
 fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted() {
-    let mut channels = RecordChannels { inputs: Vec::new(), outputs: vec![ChannelRule::named("P")] };
+    let mut channels = RecordChannels { outputs: vec![ChannelRule::named("P")], ..RecordChannels::default() };
     let (first, mut second) = (record(), record());
     let layout = RecordLayout::proposed(&first, &channels, &TimeWish::default()).layout;
     channels.take_units(&layout, &first);
@@ -215,11 +216,13 @@ fn a_column_that_the_engineer_names_is_taken_however_its_marks_are_typed() {
     ]);
     let with = |aliases: &[&str]| {
         let aliases = aliases.iter().map(|alias| (*alias).to_owned()).collect();
-        let channels =
-            RecordChannels { inputs: vec![ChannelRule { aliases, ..ChannelRule::named("LON") }], outputs: Vec::new() };
+        let channels = RecordChannels {
+            inputs: vec![ChannelRule { aliases, ..ChannelRule::named("LON") }],
+            ..RecordChannels::default()
+        };
         RecordLayout::proposed(&table, &channels, &TimeWish::default())
     };
-    assert!(matches!(with(&[]).problems[..], [LayoutProblem::SeveralColumns { .. }]), "a stick and a longitude");
+    assert_eq!(with(&[]).layout.inputs, [Some(ColumnUse::as_it_is(1))], "the longitude is no stick");
     assert_eq!(with(&["elev_yoke1"]).layout.inputs, [Some(ColumnUse::as_it_is(1))]);
 }
 
@@ -244,4 +247,79 @@ fn a_channel_that_stands_still_and_two_that_are_one_are_told() {
     table.columns[4] = RecordColumn { name: "LON".into(), ..table.columns[2].clone() };
     let words: Vec<String> = proposed(&table).cautions.iter().map(ToString::to_string).collect();
     assert_eq!(words, ["LON and LAT have the same samples"]);
+}
+
+#[test]
+fn a_latitude_and_a_longitude_are_no_sticks() {
+    let with = |lat: RecordColumn, lon: RecordColumn| {
+        let roll = column("P", "deg/s", |k| 10.0 * (0.2 * k).sin());
+        let nz = column("NZ", "g", |k| 1.0 + 0.1 * (0.3 * k).sin());
+        proposed(&table(vec![column("t", "s", |k| 0.02 * k), lat, lon, roll, nz]))
+    };
+    for unit in ["", "deg"] {
+        let found = with(column("lat", unit, |k| 47.6 + 1e-5 * k), column("lon", unit, |k| 8.5 - 2e-5 * k));
+        assert!(told(&found.problems).contains("no column is the input LON"), "{unit}: {found:?}");
+        assert_eq!(found.layout.inputs, [None, None], "{unit}");
+    }
+    // A stick that is held beside one that is moved is a stick.
+    let sticks = with(column("lat", "", |_| 50.0), column("lon", "", |k| 50.0 + 8.0 * (0.1 * k).sin()));
+    assert_eq!(sticks.layout.inputs, [Some(ColumnUse::as_it_is(2)), Some(ColumnUse::as_it_is(1))], "{sticks:?}");
+}
+
+#[test]
+fn columns_without_names_are_said_by_their_numbers() {
+    let mut table = record();
+    table.named = false;
+    for (index, column) in table.columns.iter_mut().enumerate() {
+        column.name = format!("column {}", index + 1);
+    }
+    let channel = |name: &str, alias: &str| ChannelRule { aliases: vec![alias.to_owned()], ..ChannelRule::named(name) };
+    let with = |last: &str| {
+        let channels = RecordChannels {
+            inputs: vec![channel("LON", "#5")],
+            outputs: vec![channel("P", "#4"), channel("NZ", last)],
+            ..RecordChannels::default()
+        };
+        let time = TimeWish { column: Some("#2".to_owned()), sample_time_s: None };
+        RecordLayout::proposed(&table, &channels, &time)
+    };
+    let found = with("#1");
+    assert_eq!(found.problems, [], "{found:?}");
+    assert_eq!(found.layout.inputs, [Some(ColumnUse::as_it_is(4))]);
+    assert_eq!(found.layout.outputs, [Some(ColumnUse::as_it_is(3)), Some(ColumnUse::as_it_is(0))]);
+    assert!(told(&with("#7").problems).contains("no column is the output NZ"));
+}
+
+#[test]
+fn a_unit_or_a_factor_that_is_said_stands_before_that_of_the_file() {
+    let mut channels = channels();
+    channels.said.insert("NZ".to_owned(), SaidConversion::Factor(-9.8));
+    channels.said.insert("P".to_owned(), SaidConversion::Unit("deg/s".to_owned()));
+    let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
+    assert_eq!(found.layout.outputs.iter().map(|used| used.unwrap().factor).collect::<Vec<_>>(), [1.0, -9.8]);
+    assert!(found.notes.contains(&"NZ: column \"az\", × -9.8 as asked".to_owned()), "{:?}", found.notes);
+}
+
+#[test]
+fn the_same_record_under_two_names_counts_once() {
+    let laid_out = |name: &str, first: f64| {
+        let mut table = RecordTable { name: name.to_owned(), ..record() };
+        table.columns[2].values[0] = first;
+        LaidOutRecord::proposed(table, &channels(), &TimeWish::default()).0
+    };
+    let mut records = [laid_out("a", 55.0), laid_out("b", 55.0), laid_out("c", 54.0)];
+    leave_out_copies(&mut records);
+    leave_out_copies(&mut records);
+    assert_eq!(records.each_ref().map(|record| record.used), [true, false, true]);
+    let words: Vec<String> = records[1].cautions.iter().map(ToString::to_string).collect();
+    assert_eq!(words, ["its samples are those of a: left out, for evidence counts once"]);
+}
+
+#[test]
+fn a_mark_before_the_name_of_a_column_turns_its_sign() {
+    let mut channels = channels();
+    channels.outputs[1].aliases = vec!["-az".to_owned()];
+    let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
+    assert_eq!(found.layout.outputs[1], Some(ColumnUse { column: 0, factor: -9.806_65 }), "{found:?}");
+    assert!(found.notes.contains(&"NZ: the sign of column \"az\" is turned, as asked".to_owned()), "{:?}", found.notes);
 }

@@ -5,6 +5,7 @@ use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor};
 use crate::dataset::{Channel, ConditionRecord, Dataset};
 use crate::identification::FlightRecord;
 use nalgebra::DMatrix;
+use std::collections::BTreeMap;
 
 /// A column of a record that is a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +63,8 @@ impl RecordLayout {
             let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
-        let (inputs, outputs) = (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
+        let (mut inputs, mut outputs) =
+            (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
         let all: Vec<_> = inputs.iter().chain(&outputs).copied().collect();
         for (index, (rule, used)) in all.iter().enumerate() {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
@@ -85,6 +87,9 @@ impl RecordLayout {
                 same.map(|(first, _)| LayoutCaution::Same { first: first.name.clone(), second: rule.name.clone() }),
             );
         }
+        let unsaid = |(rule, _): &(&ChannelRule, ColumnUse)| !channels.said.contains_key(&rule.name);
+        inputs.retain(unsaid);
+        outputs.retain(unsaid);
         cautions.extend(perhaps_other_units(table, &inputs, &outputs));
         cautions
     }
@@ -295,14 +300,25 @@ pub(super) fn perhaps_other_units(
 
 // The channels that records are to give.
 
+/// What the engineer says of the samples of a channel, whatever their file says.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SaidConversion {
+    /// They are in this unit.
+    Unit(String),
+    /// How many of the channel's units one of the column's is; negative where the sign is the other one.
+    Factor(f64),
+}
+
 /// Inputs and outputs that records are to give. A channel without a unit is taken in that of the file; one with other names is looked for
 /// by these alone.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordChannels {
     /// Inputs, in order.
     pub inputs: Vec<ChannelRule>,
     /// Outputs, in order.
     pub outputs: Vec<ChannelRule>,
+    /// What is said of samples, by channel.
+    pub said: BTreeMap<String, SaidConversion>,
 }
 
 impl RecordChannels {
@@ -316,6 +332,7 @@ impl RecordChannels {
         Self {
             inputs: dataset.inputs().iter().map(rule).collect(),
             outputs: dataset.outputs().iter().map(rule).collect(),
+            said: BTreeMap::new(),
         }
     }
 
@@ -324,7 +341,14 @@ impl RecordChannels {
         let sides = [(&mut self.inputs, &layout.inputs), (&mut self.outputs, &layout.outputs)];
         for (rules, uses) in sides {
             for (rule, used) in rules.iter_mut().zip(uses).filter(|(rule, _)| rule.unit.is_empty()) {
-                let unit = used.and_then(|used| table.columns.get(used.column)?.unit.clone()).unwrap_or_default();
+                let of_file = || used.and_then(|used| table.columns.get(used.column)?.unit.clone());
+                let unit = match self.said.get(&rule.name) {
+                    Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
+                    // In which unit the product is, nobody says.
+                    Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
+                    _ => of_file(),
+                };
+                let unit = unit.unwrap_or_default();
                 rule.unit_in_files = Some(unit.clone()).filter(|unit| !unit.is_empty());
                 rule.unit = unit;
             }

@@ -66,10 +66,16 @@ impl RecordTable {
         self.columns.first().map_or(0, |column| column.values.len())
     }
 
-    /// The column of this name, as it is written, else without case.
+    /// The column of this name, as it is written, else without case; `#30` is the thirtieth.
     pub fn find(&self, name: &str) -> Option<usize> {
         let position = |is_it: &dyn Fn(&str) -> bool| self.columns.iter().position(|column| is_it(&column.name));
-        position(&|column| column == name).or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
+        let numbered = || {
+            let number: usize = name.trim().strip_prefix('#')?.parse().ok()?;
+            number.checked_sub(1).filter(|column| *column < self.columns.len())
+        };
+        position(&|column| column == name)
+            .or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
+            .or_else(numbered)
     }
 
     /// The name of a column in quotation marks.

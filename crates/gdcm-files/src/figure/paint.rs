@@ -386,18 +386,18 @@ pub fn dot_shapes([x, y]: [f64; 2], (shape, part): (DotShape, f64), color: Color
         let points = corners.iter().map(|[dx, dy]| [x + size * dx, y + size * dy]).collect();
         vec![Shape::Path { points, closed: true, fill, stroke }]
     };
-    // Both strokes as one line, over the middle.
-    let strokes = |[a, b, c, d]: [[f64; 2]; 4]| {
-        let points: Vec<[f64; 2]> = [a, b, [0.0, 0.0], c, d].map(|[dx, dy]| [x + radius * dx, y + radius * dy]).into();
-        vec![Shape::line(points, line)]
+    // Two lines: one that turns back over the middle has no direction there, and its corner no place on the screen.
+    let strokes = |ends: [[[f64; 2]; 2]; 2]| {
+        let place = |[dx, dy]: [f64; 2]| [x + radius * dx, y + radius * dy];
+        ends.map(|ends| Shape::line(ends.map(place).to_vec(), line)).to_vec()
     };
     match shape {
         DotShape::Circle => vec![Shape::Circle { center: [x, y], radius: size, fill, stroke }],
         DotShape::Diamond => corners(&[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]]),
         DotShape::Square => corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         DotShape::Triangle => corners(&[[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]]),
-        DotShape::Cross => strokes([[-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0]]),
-        DotShape::Plus => strokes([[-1.3, 0.0], [1.3, 0.0], [0.0, -1.3], [0.0, 1.3]]),
+        DotShape::Cross => strokes([[[-1.0, -1.0], [1.0, 1.0]], [[-1.0, 1.0], [1.0, -1.0]]]),
+        DotShape::Plus => strokes([[[-1.3, 0.0], [1.3, 0.0]], [[0.0, -1.3], [0.0, 1.3]]]),
     }
 }
 

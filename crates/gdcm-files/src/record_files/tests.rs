@@ -21,6 +21,7 @@ fn channels() -> RecordChannels {
     RecordChannels {
         inputs: vec![rule("LON", "%", "%"), rule("LAT", "%", "%")],
         outputs: vec![rule("P", "rad/s", "rad/s"), rule("NZ", "g", "g")],
+        ..RecordChannels::default()
     }
 }
 

@@ -175,15 +175,17 @@ pub(super) fn is_unit(text: &str) -> bool {
 
 /// Cuts a heading into a name and a unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
-/// Square brackets hold a unit whatever they say; round ones and what follows a comma only if it is made of known words, as
+/// Square brackets hold a unit whatever they say but a whole number; round ones and what follows a comma only if it is made of known words, as
 /// "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     let clean = |text: &str| text.trim_matches(|c: char| c.is_whitespace() || c == '_').to_owned();
     for (open, close, always) in [('[', ']', true), ('(', ')', false), ('{', '}', false)] {
         let inner = heading.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
+        // `xyz[0]` is an index.
+        let is_index = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
         if let Some((name, unit)) = inner
-            && (always || is_unit(unit))
+            && ((always && !is_index(unit)) || is_unit(unit))
         {
             return (clean(name), Some(unit.trim().to_owned()).filter(|unit| !unit.is_empty()));
         }
@@ -207,6 +209,12 @@ mod heading_tests {
 
     fn units(heading: &Heading) -> Vec<&str> {
         heading.units.iter().map(|unit| unit.as_deref().unwrap_or("")).collect()
+    }
+
+    #[test]
+    fn a_whole_number_in_brackets_is_an_index() {
+        assert_eq!(name_and_unit("xyz[0]"), ("xyz[0]".to_owned(), None));
+        assert_eq!(name_and_unit("xyz [1/s]"), ("xyz".to_owned(), Some("1/s".to_owned())));
     }
 
     #[test]

@@ -34,8 +34,10 @@ impl WithSimd for Elimination<'_> {
         let (outputs, inputs) = if form.dual { (form.inputs, form.outputs) } else { (form.outputs, form.inputs) };
         let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.at.len()));
         let mut vectors: Vec<ComplexRows<S>> = Vec::new();
+        for _ in 0..GROUP / S::F64_LANES {
+            vectors.push(ComplexRows { shift: ComplexLanes::real(simd, 0.0), entries: Vec::new() });
+        }
         for at in self.at.chunks(GROUP) {
-            vectors.clear();
             let (mut re, mut im) = ([0.0; GROUP], [0.0; GROUP]);
             for lane in 0..GROUP {
                 // If there are fewer, the last is in the other lanes.
@@ -44,19 +46,20 @@ impl WithSimd for Elimination<'_> {
                 (re[lane], im[lane]) = if at.norm() > LARGEST { (f64::NAN, f64::NAN) } else { (at.re, at.im) };
             }
             let (re, im) = (S::as_simd_f64s(&re).0, S::as_simd_f64s(&im).0);
-            for (re, im) in re.iter().zip(im).take(at.len().div_ceil(S::F64_LANES)) {
-                vectors.push(ComplexRows::start(simd, form, ComplexLanes { re: *re, im: *im }));
+            let vectors = &mut vectors[..at.len().div_ceil(S::F64_LANES)];
+            for (rows, (re, im)) in vectors.iter_mut().zip(re.iter().zip(im)) {
+                rows.start(simd, form, ComplexLanes { re: *re, im: *im });
             }
             for column in 0..form.order.saturating_sub(1) {
                 let mut interchange = false;
-                for rows in &vectors {
+                for rows in &*vectors {
                     interchange |= rows.asks_for_interchange(simd, form, column);
                 }
-                for rows in &mut vectors {
+                for rows in &mut *vectors {
                     rows.clear(simd, form, column, interchange);
                 }
             }
-            for rows in &mut vectors {
+            for rows in &mut *vectors {
                 rows.finish(simd, form);
             }
             for output in 0..form.outputs {
@@ -88,17 +91,18 @@ struct ComplexRows<S: Simd> {
 }
 
 impl<S: Simd> ComplexRows<S> {
-    /// The rows before anything is eliminated.
+    /// The rows before anything is eliminated, in the memory of those of other frequencies.
     #[inline(always)]
-    fn start(simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) -> Self {
-        let mut entries = Vec::with_capacity(form.complex_rows.len());
+    fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
+        self.shift = shift;
+        self.entries.clear();
+        self.entries.reserve(form.complex_rows.len());
         for entry in &form.complex_rows {
-            entries.push(ComplexLanes::real(simd, *entry));
+            self.entries.push(ComplexLanes::real(simd, *entry));
         }
         if form.order > 0 {
-            entries[0] = entries[0].minus(simd, shift);
+            self.entries[0] = self.entries[0].minus(simd, shift);
         }
-        Self { shift, entries }
     }
 
     /// Whether the entry of the active row is too large for the next row to clear, or not a number, in any lane.

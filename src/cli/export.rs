@@ -66,7 +66,8 @@ impl FromStr for Breakpoints {
 }
 
 fn formats() -> impl TypedValueParser<Value = ExportFormat> {
-    let values = EXPORTERS.map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
+    let values =
+        EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
     PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
 }
 

@@ -7,10 +7,16 @@ use std::process::Command;
 use gdcm_core::assembly::{FoundModel, Headings};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::response::evaluate;
-use gdcm_files::{About, EXPORTERS, FolderProgress, read_corrections, read_models};
-use serde_json::json;
+use gdcm_files::{About, EXPORTERS, FolderProgress, read_models};
+use serde_json::{Value, json};
 
 use crate::commands::Desk;
+use crate::{entries, members};
+
+/// The numbers of JSON; NaN where there is none.
+fn numbers<'j>(json: impl IntoIterator<Item = &'j Value>) -> Vec<f64> {
+    json.into_iter().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
+}
 
 struct Silent;
 
@@ -140,24 +146,26 @@ fn corrected_models_are_the_program_s_in_every_format() {
     }
     // Against the physics models and the corrections as `analyze` writes them.
     desk.gdcm(&["analyze", "--out", "."]).assert_done();
-    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    let corrections = crate::read_json(&desk.path("corrections.json"));
     let omega = [0.5, 3.0, 12.0];
     let mut delayed = 0;
-    for (model, result) in found.iter().zip(&corrections.conditions) {
-        let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| of.id().0 == result.id).unwrap();
-        let physics = condition.model(gdcm_core::dataset::BundleKind::Physics, &result.physics_representative).unwrap();
+    for (model, result) in found.iter().zip(entries(&corrections["conditions"])) {
+        let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| result["id"] == of.id().0).unwrap();
+        let representative = result["physics_representative"].as_str().unwrap();
+        let physics = condition.model(gdcm_core::dataset::BundleKind::Physics, representative).unwrap();
+        let figures = |metric: &str, side: &str| numbers(members(&result[metric][side]));
         let gdcm_core::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
         let (corrected, plain) = (evaluate(&state_space(model), &omega), evaluate(plain, &omega));
-        for (output, (_, output_gain)) in result.gains.outputs.0.iter().enumerate() {
-            for (input, (_, input_gain)) in result.gains.inputs.0.iter().enumerate() {
-                let delay = result.delays_s.outputs.0[output].1 + result.delays_s.inputs.0[input].1;
+        for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
+            for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
+                let delay = figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
                 delayed += usize::from(delay > 0.0);
                 let (corrected, plain) = (corrected.curve(Pair { output, input }), plain.curve(Pair { output, input }));
                 for (at, omega) in omega.into_iter().enumerate() {
                     let factor = nalgebra::Complex::new(0.0, -omega * delay).exp() * output_gain * input_gain;
                     let expected = plain[at] * factor;
                     // What order 8 misses of these delays is less than rounding.
-                    assert!((corrected[at] - expected).norm() <= 1e-9 * expected.norm(), "condition {}", result.id);
+                    assert!((corrected[at] - expected).norm() <= 1e-9 * expected.norm(), "condition {}", result["id"]);
                 }
             }
         }
@@ -180,28 +188,28 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     let found = models(&desk.path("m.json"));
     assert_eq!(found[0].draft.states[..2], ["LON lead 1", "LON lead 2"]);
     desk.gdcm(&["analyze", "--phase", "lead", "--out", "."]).assert_done();
-    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
-    let at = corrections.schedule.as_ref().unwrap().table.iter().find(|row| row.airspeed_kt == 120.0).unwrap();
-    let filter = |of: &gdcm_files::LeadEntry, s: nalgebra::Complex<f64>| {
-        let side = |omega: Option<f64>| {
-            let x = s / omega.unwrap();
+    let corrections = crate::read_json(&desk.path("corrections.json"));
+    let at = entries(&corrections["schedule"]["table"]).iter().find(|row| row["airspeed_kt"] == 120.0).unwrap();
+    let filter = |of: &Value, s: nalgebra::Complex<f64>| {
+        let side = |omega: &Value| {
+            let x = s / omega.as_f64().unwrap();
             x * x + x * 2.0_f64.sqrt() + 1.0
         };
-        side(of.zero_rad_s) / side(of.lag_rad_s)
+        side(&of["zero_rad_s"]) / side(&of["lag_rad_s"])
     };
     let physics = &crate::EXAMPLE.dataset.conditions()[0];
     let nominal = &physics.bundle(gdcm_core::dataset::BundleKind::Physics)[physics.nominal()];
     let gdcm_core::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
     let omega = [0.5, 3.0, 12.0, 120.0];
     let (corrected, plain) = (evaluate(&state_space(&found[0]), &omega), evaluate(plain, &omega));
-    let leads = at.lead.as_ref().unwrap();
-    for (output, (_, output_gain)) in at.outputs.0.iter().enumerate() {
-        for (input, (_, input_gain)) in at.inputs.0.iter().enumerate() {
+    let [input_leads, output_leads] = ["inputs", "outputs"].map(|side| members(&at["lead"][side]));
+    for (output, output_gain) in numbers(members(&at["outputs"])).into_iter().enumerate() {
+        for (input, input_gain) in numbers(members(&at["inputs"])).into_iter().enumerate() {
             let pair = Pair { output, input };
             for (place, omega) in omega.into_iter().enumerate() {
                 let s = nalgebra::Complex::new(0.0, omega);
-                let filters = filter(&leads.outputs.0[output].1, s) * filter(&leads.inputs.0[input].1, s);
-                let expected = plain.curve(pair)[place] * filters * *output_gain * *input_gain;
+                let filters = filter(output_leads[output], s) * filter(input_leads[input], s);
+                let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
                 // Responses are evaluated to a part of the greatest one, of order 1; far above the band most are 1e-6 of it.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
                 assert!((corrected.curve(pair)[place] - expected).norm() <= allowed, "{pair:?} at {omega} rad/s");
@@ -218,7 +226,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         let text = fs::read_to_string(desk.path(name)).unwrap();
         assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
     }
-    let zero_s = 1.0 / leads.inputs.get("LAT").unwrap().zero_rad_s.unwrap();
+    let zero_s: f64 = 1.0 / at["lead"]["inputs"]["LAT"]["zero_rad_s"].as_f64().unwrap();
     let program = "import c\nzi, zo = c.gdcm_leads(120.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
                    print(repr(zi[1]), repr(D[0][0]), len(zo), len(A))";
     if let Ok(output) = Command::new("python3").args(["-c", program]).current_dir(&desk.directory).output() {
@@ -304,7 +312,7 @@ fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
 fn octave_reads_the_corrections_as_analyze_writes_them() {
     let desk = Desk::new();
     desk.gdcm(&["analyze", "--out", ".", "--schedule-delays"]).assert_done();
-    let corrections = read_corrections(&desk.path("corrections.json")).unwrap();
+    let corrections = crate::read_json(&desk.path("corrections.json"));
     desk.gdcm(&["export", "--as", "mat", "--out", "c.mat", "--schedule-delays"]).assert_done();
     let program = "load c.mat; for c = corrections.conditions, \
                    printf('%.17g ', c.id, c.G', c.D_s', c.gains.inputs, c.delays_s.outputs, c.J.corrected.mag', c.net_gains'); end; \
@@ -313,20 +321,19 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
                    assert(c.net_gain_table.gain(2, 1) == c.net_gains(2, 1) && rows(c.bars.G.interval) == 6);";
     let Some(found) = octave(&desk, program) else { return };
     let mut expected = Vec::new();
-    let table =
-        |table: &gdcm_files::Table| table.iter().flatten().map(|entry| entry.unwrap_or(f64::NAN)).collect::<Vec<_>>();
-    let figures = |of: &gdcm_files::ByName<f64>| of.0.iter().map(|(_, figure)| *figure).collect::<Vec<_>>();
-    for of in &corrections.conditions {
-        expected.push(of.id as f64);
-        expected.extend([table(&of.delta_gain), table(&of.delta_delay_s)].concat());
-        expected.extend([figures(&of.gains.inputs), figures(&of.delays_s.outputs)].concat());
-        expected.extend(table(&of.cost.corrected.mag));
-        expected.extend(of.net_gains.iter().map(|net| net.gain));
+    let table = |table: &Value| numbers(entries(table).iter().flat_map(entries));
+    let figures = |of: &Value| numbers(members(of));
+    for of in entries(&corrections["conditions"]) {
+        expected.push(of["id"].as_f64().unwrap());
+        expected.extend([table(&of["G"]), table(&of["D_s"])].concat());
+        expected.extend([figures(&of["gains"]["inputs"]), figures(&of["delays_s"]["outputs"])].concat());
+        expected.extend(table(&of["J"]["corrected"]["mag"]));
+        expected.extend(numbers(entries(&of["net_gains"]).iter().map(|net| &net["gain"])));
     }
-    let schedule = corrections.schedule.unwrap();
-    expected.extend(schedule.inputs.0.iter().flat_map(|(_, coefficients)| coefficients));
-    expected.extend(schedule.delays_s.unwrap().upper_s.unwrap());
-    expected.extend(schedule.table.iter().flat_map(|row| figures(&row.outputs)));
+    let schedule = &corrections["schedule"];
+    expected.extend(numbers(members(&schedule["inputs"]).into_iter().flat_map(entries)));
+    expected.extend(numbers(entries(&schedule["delays_s"]["upper_s"])));
+    expected.extend(entries(&schedule["table"]).iter().flat_map(|row| figures(&row["outputs"])));
     assert_eq!(found.len(), expected.len());
     assert!(found.iter().zip(&expected).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())), "to the last digit");
 }

@@ -19,6 +19,21 @@ mod report;
 mod structure;
 mod window;
 
+/// What a file of JSON holds.
+fn read_json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(path).expect("it can be read")).expect("it is JSON")
+}
+
+/// The members of an object of JSON, in their order.
+fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
+    json.as_object().expect("it is an object").values().collect()
+}
+
+/// The entries of a list of JSON.
+fn entries(json: &serde_json::Value) -> &[serde_json::Value] {
+    json.as_array().expect("it is a list")
+}
+
 /// The embedded example, read once: most tests of the window and of whole studies start from it.
 static EXAMPLE: LazyLock<LoadedDataset> =
     LazyLock::new(|| embedded_example().expect("the embedded example is a dataset"));

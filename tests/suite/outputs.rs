@@ -7,12 +7,12 @@ use std::path::Path;
 use egui_kittest::kittest::Queryable;
 use gdcm::view::state::NoticeKind;
 use gdcm_core::study::Study;
-use gdcm_files::{load_dataset, read_corrections, save_study};
+use gdcm_files::{load_dataset, save_study};
 
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};
 
-const RESULTS: [&str; 3] = ["assessment.csv", "corrections.csv", "corrections.json"];
+const RESULTS: [&str; 4] = ["assessment.csv", "corrections.csv", "corrections.json", "corrections.sha256"];
 
 fn names(directory: &Path) -> Vec<String> {
     let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -36,10 +36,12 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     let analyze = ["analyze", "small.json", "--out", "out"];
     desk.gdcm(&analyze).assert_done();
     fs::write(desk.path("out/corrections.csv"), "mine").unwrap();
-    let words = ["out/corrections.json, out/corrections.csv, out/assessment.csv exist already; --force overwrites"];
+    let all = "out/corrections.json, out/corrections.csv, out/assessment.csv, out/corrections.sha256";
+    let words = [&*format!("{all} exist already; --force overwrites")];
     desk.gdcm(&analyze).assert_failed(2, &words);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
+    fs::remove_file(desk.path("out/corrections.sha256")).unwrap();
     desk.gdcm(&analyze).assert_failed(2, &["gdcm: out/corrections.csv exists already; --force overwrites"]);
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
     assert_eq!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap(), "mine");
@@ -118,7 +120,7 @@ fn a_closed_standard_output_costs_the_summary_and_nothing_else() {
     let desk = Desk::new();
     shell(&desk, "gdcm analyze small.json --out out >&-").assert_done();
     assert_eq!(names(&desk.path("out")), RESULTS);
-    assert_eq!(read_corrections(&desk.path("out/corrections.json")).unwrap().conditions.len(), 2);
+    assert_eq!(crate::entries(&crate::read_json(&desk.path("out/corrections.json"))["conditions"]).len(), 2);
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
 }
 
@@ -141,7 +143,7 @@ fn an_export_over_existing_files_asks_first() {
     click(&mut window, "Export corrections…");
     click(&mut window, "Export");
     let existing = state(&window).forms.existing.clone();
-    assert!(existing.len() == 3 && existing[1].ends_with("corrections.csv"), "{existing:?}");
+    assert!(existing.len() == 4 && existing[1].ends_with("corrections.csv"), "{existing:?}");
     let shown = |window: &Window, label: &str| window.query_by_label(label).is_some();
     assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
@@ -187,4 +189,35 @@ fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temp
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(ended.error.starts_with("gdcm: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
     assert!(!ended.error.contains(".tmp") && !ended.error.contains("os error"), "{}", ended.error);
+}
+
+#[test]
+fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_written() {
+    for file in ["injected-names.json", "escape-in-title.json"] {
+        let desk = Desk::new();
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
+        let data = data.to_str().unwrap();
+        desk.gdcm(&["analyze", data, "--out", "."]).assert_done();
+        for (view, name) in [("poles", "poles.csv"), ("poles", "poles.svg"), ("overview", "overview.csv")] {
+            desk.gdcm(&["figure", data, "--view", view, "--condition", "1", "--out", name]).assert_done();
+        }
+        for format in ["m", "py", "h", "table-csv"] {
+            desk.gdcm(&["export", data, "--as", format, "--out", &format!("export.{}", format.replace("table-", ""))]);
+        }
+        desk.gdcm(&["report", data, "--out", "report.html"]).assert_done();
+        let written = names(desk.directory.path());
+        assert!(written.len() >= 10, "{written:?}");
+        for name in written.iter().filter(|name| !name.contains("small")) {
+            let text = fs::read_to_string(desk.path(name)).unwrap();
+            let control = text.chars().find(|letter| letter.is_control() && *letter != '\n');
+            assert_eq!(control, None, "{file}: {name}");
+            for line in text.lines().filter(|_| name.ends_with(".csv")) {
+                let is_formula = |cell: &str| {
+                    cell.trim_start_matches('"').starts_with(['=', '@'])
+                        || (cell.starts_with(['+', '-']) && cell.parse::<f64>().is_err())
+                };
+                assert!(!line.split(',').any(is_formula), "{file}: {name}: {line}");
+            }
+        }
+    }
 }

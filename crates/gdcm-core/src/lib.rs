@@ -124,3 +124,4 @@ pub mod schedule;
 pub mod study;
 pub mod uncertainty;
 pub mod units;
+pub mod whole_number;

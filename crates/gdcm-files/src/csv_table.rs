@@ -3,26 +3,35 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
 
 use super::file_error::FileError;
 use super::output_set::OutputSet;
 
-/// Writes records of one length below one another.
+/// Writes records of one length below one another; each cell is a [`plain`] one.
 pub(super) fn write_records<R>(file: &mut dyn Write, records: impl Iterator<Item = R>) -> io::Result<()>
 where
     R: IntoIterator,
-    R::Item: AsRef<[u8]>,
+    R::Item: AsRef<str>,
 {
     let mut table = csv::Writer::from_writer(file);
     for record in records {
         // Unpacked, so that a full disk is told as one.
-        table.write_record(record).map_err(|error| match error.into_kind() {
+        let cells = record.into_iter().map(|cell| plain(cell.as_ref()));
+        table.write_record(cells).map_err(|error| match error.into_kind() {
             csv::ErrorKind::Io(error) => error,
             _ => io::ErrorKind::InvalidData.into(),
         })?;
     }
     table.flush()
+}
+
+/// A cell that no spreadsheet takes for a formula, and no terminal for a command: one that begins with `=`, `+`, `-` or `@` and is no
+/// number stands behind an apostrophe, control characters and invisible ones are spelt out.
+fn plain(cell: &str) -> String {
+    let is_formula = cell.starts_with(['=', '+', '-', '@']) && cell.parse::<f64>().is_err();
+    format!("{}{}", if is_formula { "'" } else { "" }, sanitized(cell))
 }
 
 /// Writes tables: one as headings and rows; several below one another, each under a line with its title, with an empty line between
@@ -68,6 +77,26 @@ mod tests {
     #[test]
     fn one_table_is_headings_and_rows() {
         assert_eq!(csv_text(&[table("left out")]), "model,J [-]\n\"V+5kt, again\",1.5\n");
+    }
+
+    #[test]
+    fn no_cell_is_a_formula_or_a_command_and_numbers_stay() {
+        for (cell, written) in [
+            ("=cmd|' /C calc'!A0", "'=cmd|' /C calc'!A0"),
+            ("@SUM(1+1)", "'@SUM(1+1)"),
+            ("-roll", "'-roll"),
+            ("+5 kt", "'+5 kt"),
+            ("-1.5e-3", "-1.5e-3"),
+            ("+2", "+2"),
+            ("\u{1b}]0;evil\u{7}", "\\u{1b}]0;evil\\u{7}"),
+            ("\t=1", "\\t=1"),
+            ("Δφ – 5", "Δφ – 5"),
+        ] {
+            assert_eq!(plain(cell), written);
+        }
+        let mut table = Table::new("=title", ["=1+1"]);
+        table.row(["@x"]);
+        assert_eq!(csv_text(&[table.clone(), table]).lines().filter(|line| line.starts_with('\'')).count(), 6);
     }
 
     #[test]

@@ -75,7 +75,7 @@ struct ValidationText<'m> {
 struct RecordText<'m> {
     name: &'m str,
     file: &'m str,
-    sha256: &'m str,
+    sha256: Option<&'m str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     variable: Option<&'m str>,
     held_out: bool,
@@ -157,7 +157,7 @@ fn record_text<'m>(found: &Identification, index: usize, record: &'m ConditionRe
     RecordText {
         name: &record.name,
         file: &record.file,
-        sha256: record.sha256.as_deref().unwrap_or_default(),
+        sha256: record.sha256.as_deref(),
         variable: record.variable.as_deref(),
         held_out: record.held_out,
         used_s: &record.used_s,

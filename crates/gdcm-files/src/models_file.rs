@@ -6,6 +6,7 @@ use std::path::Path;
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_core::dataset::{Origin, Provenance};
+use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::ModelText;
@@ -21,6 +22,7 @@ pub(super) const IDENTIFIED: Format = Format { name: "gdcm-identified", version:
 #[derive(Deserialize, Serialize)]
 struct ModelsText {
     format: String,
+    #[serde(deserialize_with = "whole")]
     version: u64,
     #[serde(deserialize_with = "list::<MOST_MODELS_IN_ALL, _, _>")]
     models: Vec<ModelText>,

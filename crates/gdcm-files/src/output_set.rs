@@ -1,11 +1,13 @@
 //! Files that are written whole, or not at all; several of them together.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
 use std::sync::{Arc, atomic::AtomicBool};
 
+use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::file_error::FileError;
@@ -24,8 +26,12 @@ pub enum Existing {
 /// ```text
 /// check    nothing stands in the way                                   (before any work)
 /// add      write each beside its place, to the disk                    (a full disk shows here)
-/// persist  keep what each replaces aside; rename; on an error rename back what was kept aside
+/// persist  wait for other sets in the same directory; keep what each replaces aside; rename, in the order in which they were added;
+///          on an error rename back what was kept aside
 /// ```
+///
+/// No file system renames several files at once. A process that is killed between two of them leaves new files beside old ones; where
+/// that matters, checksums that are added last tell it.
 ///
 /// Dropped before it is persisted, a set leaves everything as it was. What a killed run left behind is removed when something is
 /// next written into its directory.
@@ -99,10 +105,28 @@ impl OutputSet {
         Ok(())
     }
 
+    /// Adds the SHA-256 of every file so far, as `sha256sum` writes them: this file takes its place last, and tells whether the others
+    /// belong together.
+    pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
+        let line = |staged: &Staged| {
+            let name = &staged.path.file_name().unwrap_or_default().to_string_lossy();
+            Ok(checksum(name, &fs::read(staged.temporary.path())?))
+        };
+        let lines: io::Result<String> = self.staged.iter().map(line).collect();
+        let lines = lines.map_err(|error| FileError::writing(path, &error))?;
+        self.add(path, |file| file.write_all(lines.as_bytes()))
+    }
+
     /// Puts every file in its place, or none.
     pub fn persist(self) -> Result<(), FileError> {
+        let directories: BTreeSet<&Path> = self.staged.iter().map(|staged| directory_of(&staged.target)).collect();
+        // Of one file the last to write is right.
+        let is_set = self.staged.len() > 1;
+        let _locks: Vec<SetLock> = directories.into_iter().filter(|_| is_set).filter_map(SetLock::of).collect();
         let mut placed: Vec<Placed> = Vec::new();
         for Staged { path, target, temporary } in self.staged {
+            #[cfg(test)]
+            tests::end_here(&path);
             match Placed::at(target, temporary, self.existing) {
                 Ok(file) => placed.push(file),
                 Err(error) => {
@@ -115,6 +139,41 @@ impl OutputSet {
             }
         }
         Ok(())
+    }
+}
+
+/// A file's line among checksums.
+fn checksum(name: &str, bytes: &[u8]) -> String {
+    format!("{:x}  {name}\n", Sha256::digest(bytes))
+}
+
+/// The right to put a set of files into a directory: a locked file there, which the next set waits for. It ends with its process,
+/// however that ends.
+struct SetLock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl SetLock {
+    /// Waits for the right; none where the file system knows no locks.
+    fn of(directory: &Path) -> Option<Self> {
+        let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
+        loop {
+            let file = File::options().create(true).truncate(false).write(true).open(&path).ok()?;
+            file.lock().ok()?;
+            let locked = same_file::Handle::from_file(file.try_clone().ok()?).ok()?;
+            // Whoever had it before has removed the file that was waited for.
+            if same_file::Handle::from_path(&path).is_ok_and(|there| there == locked) {
+                return Some(Self { path, _file: file });
+            }
+        }
+    }
+}
+
+impl Drop for SetLock {
+    fn drop(&mut self) {
+        // What cannot be removed is removed as a leftover later.
+        let _ = fs::remove_file(&self.path);
     }
 }
 
@@ -245,6 +304,75 @@ mod tests {
             set.add(path, |file| file.write_all(text.as_bytes()))?;
         }
         Ok(set)
+    }
+
+    /// Says in an environment before which file a process of a test ends as if it were killed.
+    const END: &str = "GDCM_TEST_END_BEFORE";
+
+    /// Ends the process where a test asked for that.
+    pub(super) fn end_here(path: &Path) {
+        if std::env::var_os(END).is_some_and(|name| path.file_name() == Some(&name)) {
+            std::process::abort();
+        }
+    }
+
+    const SET: [&str; 3] = ["a.json", "b.csv", "c.csv"];
+    const CHECKSUMS: &str = "a.sha256";
+
+    fn write_set(directory: &Path, text: &str) -> Result<(), FileError> {
+        let paths = SET.map(|name| directory.join(name));
+        let mut set = set_of(Existing::Replace, &paths.each_ref().map(|path| (path.as_path(), text)))?;
+        set.add_checksums(&directory.join(CHECKSUMS))?;
+        set.persist()
+    }
+
+    /// The text of a set that is whole by its checksums.
+    fn whole_set(directory: &Path) -> Option<String> {
+        let read = |name: &str| fs::read_to_string(directory.join(name)).unwrap();
+        let lines = SET.map(|name| checksum(name, read(name).as_bytes()));
+        (read(CHECKSUMS) == lines.concat()).then(|| read(SET[0]))
+    }
+
+    #[test]
+    fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is() {
+        // The process that is killed runs this very test.
+        if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
+            write_set(Path::new(&directory), "after").unwrap();
+        }
+        let module = module_path!().split_once("::").unwrap().1;
+        let name = format!(
+            "{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is"
+        );
+        for (end, whole) in [(SET[0], Some("before")), (SET[1], None), (SET[2], None), (CHECKSUMS, None)] {
+            let directory = tempfile::tempdir().unwrap();
+            write_set(directory.path(), "before").unwrap();
+            let mut process = std::process::Command::new(std::env::current_exe().unwrap());
+            process.args(["--exact", &name]).env(END, end).env("GDCM_TEST_DIRECTORY", directory.path());
+            assert!(!process.output().unwrap().status.success());
+            assert!(names(directory.path()).len() > 4, "the process left temporary files: it ended before {end}");
+            assert_eq!(whole_set(directory.path()).as_deref(), whole, "killed before {end}");
+            write_set(directory.path(), "again").unwrap();
+            assert_eq!(whole_set(directory.path()).as_deref(), Some("again"));
+            assert_eq!(names(directory.path()), [SET[0], CHECKSUMS, SET[1], SET[2]], "nothing is left behind");
+        }
+    }
+
+    #[test]
+    fn of_two_sets_that_are_written_at_once_one_is_there_whole() {
+        let directory = tempfile::tempdir().unwrap();
+        for _ in 0..200 {
+            let start = std::sync::Barrier::new(2);
+            std::thread::scope(|scope| {
+                for text in ["one", "other"] {
+                    scope.spawn(|| {
+                        start.wait();
+                        write_set(directory.path(), text).unwrap();
+                    });
+                }
+            });
+            assert!(whole_set(directory.path()).is_some(), "files of both");
+        }
+        assert_eq!(names(directory.path()).len(), 4, "nothing is left behind");
     }
 
     #[test]

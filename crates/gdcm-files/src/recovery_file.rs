@@ -63,7 +63,8 @@ impl RecoveryFile {
         let failed = |error| FileError::writing(&self.lock_path, &error);
         let name = saved_as.and_then(|path| std::path::absolute(path).ok()).unwrap_or_default();
         self.lock.set_len(0).and_then(|()| self.lock.rewind()).map_err(failed)?;
-        self.lock.write_all(name.to_string_lossy().as_bytes()).map_err(failed)?;
+        // A name that is not valid Unicode is not kept: a letter put in its place would lead to another file.
+        self.lock.write_all(name.to_str().unwrap_or_default().as_bytes()).map_err(failed)?;
         save_recovery(study, loaded, &self.path)
     }
 

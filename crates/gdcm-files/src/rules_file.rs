@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use gdcm_core::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule, standard_patterns};
 use gdcm_core::dataset::Location;
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_core::whole_number::{whole, whole_or_none};
 use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -154,6 +155,7 @@ const MOST_PATTERNS: usize = 200;
 #[derive(Deserialize, Serialize)]
 pub(super) struct RulesText {
     pub(super) format: String,
+    #[serde(deserialize_with = "whole")]
     pub(super) version: u64,
     pub(super) name: String,
     #[serde(default)]
@@ -205,7 +207,7 @@ pub(super) struct UnitText {
 pub(super) struct RowText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) left_out: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "whole_or_none")]
     pub(super) condition: Option<i64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) role: Option<String>,

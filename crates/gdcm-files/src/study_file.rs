@@ -13,6 +13,7 @@ use gdcm_core::study::{
     AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, ResponseNames, Settings, Study,
     TurnedChannel,
 };
+use gdcm_core::whole_number::whole;
 
 use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -49,6 +50,7 @@ pub struct OpenedStudy {
 #[derive(Deserialize, Serialize)]
 struct StudyText {
     format: String,
+    #[serde(deserialize_with = "whole")]
     version: u64,
     software: String,
     dataset: DatasetReference,
@@ -69,6 +71,7 @@ struct StudyText {
 /// Identified models taken into a condition, and the flight records that they are of.
 #[derive(Deserialize, Serialize)]
 struct TakenText {
+    #[serde(deserialize_with = "whole")]
     condition: i64,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     identified_models: Vec<ModelText>,
@@ -101,6 +104,7 @@ struct DatasetReference {
 /// The choices in one condition.
 #[derive(Deserialize, Serialize)]
 struct ConditionText {
+    #[serde(deserialize_with = "whole")]
     id: i64,
     physics: BundleChoice,
     identified: BundleChoice,

@@ -3,6 +3,7 @@
 use std::fs::{OpenOptions, create_dir_all};
 use std::path::{Path, PathBuf};
 
+use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use super::file_error::FileError;
@@ -20,6 +21,7 @@ const FORMAT: Format = Format { name: "gdcm-recent-files", version: 1 };
 #[derive(Deserialize, Serialize)]
 struct RecentText {
     format: String,
+    #[serde(deserialize_with = "whole")]
     version: u64,
     files: Vec<String>,
 }

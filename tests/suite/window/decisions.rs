@@ -39,17 +39,13 @@ fn from_the_example_to_exported_corrections() {
 
     let folder = tempfile::tempdir().unwrap();
     export_to(&mut window, folder.path());
-    let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
-    assert_eq!(written.conditions.len(), 11);
-    assert_eq!(written.settings.alpha_gain, 12.5);
-    let tenth = &written.conditions[9];
-    assert_eq!((tenth.id, tenth.physics_representative.as_str()), (10, "ROLL-5deg"));
+    let written = crate::read_json(&folder.path().join("corrections.json"));
+    assert_eq!(crate::entries(&written["conditions"]).len(), 11);
+    assert_eq!(written["settings"]["alpha_gain"], 12.5);
+    let tenth = &written["conditions"][9];
+    assert_eq!((&tenth["id"], &tenth["physics_representative"]), (&10.into(), &"ROLL-5deg".into()));
     let shown = state(&window).shown().unwrap();
-    assert_eq!(
-        tenth.gains.outputs.get("Q").copied(),
-        Some(shown.correction.output_gains[1]),
-        "read back to the last digit"
-    );
+    assert_eq!(tenth["gains"]["outputs"]["Q"], shown.correction.output_gains[1], "read back to the last digit");
     assert!(folder.path().join("corrections.csv").exists() && folder.path().join("assessment.csv").exists());
 }
 
@@ -138,11 +134,12 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
 
     let folder = tempfile::tempdir().unwrap();
     export_to(&mut window, folder.path());
-    let written = read_corrections(&folder.path().join("corrections.json")).unwrap();
-    let solution = &written.conditions[0].gain_solution;
-    assert!(!solution.matched && solution.proven);
-    let conflict = solution.explanation.conflicts.iter().find(|c| c.entries == [("Q".to_owned(), "LON".to_owned())]);
-    let upper = conflict.and_then(|conflict| conflict.upper).expect("the bound that would do is written");
+    let written = crate::read_json(&folder.path().join("corrections.json"));
+    let solution = &written["conditions"][0]["gain_solution"];
+    assert_eq!((&solution["matched"], &solution["proven"]), (&false.into(), &true.into()));
+    let mut conflicts = crate::entries(&solution["explanation"]["conflicts"]).iter();
+    let conflict = conflicts.find(|conflict| conflict["entries"] == serde_json::json!([["Q", "LON"]]));
+    let upper = conflict.and_then(|conflict| conflict["upper"].as_f64()).expect("the bound that would do is written");
     // k_Q k_LON = G needs a bound of at least its square root, rounded up to three digits.
     let gain = state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
     assert_eq!(upper, (100.0 * gain.sqrt()).ceil() / 100.0);

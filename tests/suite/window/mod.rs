@@ -41,7 +41,7 @@ use gdcm::view::views::channel_plots;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
 use gdcm_files::figure::MarkId;
-use gdcm_files::{Opened, OpenedStudy, load_any, open_study, read_corrections};
+use gdcm_files::{Opened, OpenedStudy, load_any, open_study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 

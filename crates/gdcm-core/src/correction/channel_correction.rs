@@ -50,7 +50,7 @@ impl ChannelCorrection {
     }
 
     /// Delay of a channel without its lead \[s\].
-    pub(crate) fn pure_delay_s(&self, channel: Channel) -> f64 {
+    pub fn pure_delay_s(&self, channel: Channel) -> f64 {
         match channel {
             Channel::Input(input) => self.input_delays_s[input],
             Channel::Output(output) => self.output_delays_s[output],

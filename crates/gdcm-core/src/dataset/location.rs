@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::message_text::quoted;
+use crate::whole_number::whole;
 
 /// A condition of a dataset that is being read.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -107,7 +108,7 @@ impl fmt::Display for BundleKind {
 
 /// A flight condition: the id that its dataset gives it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct ConditionId(pub i64);
+pub struct ConditionId(#[serde(deserialize_with = "whole")] pub i64);
 
 impl fmt::Display for ConditionId {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

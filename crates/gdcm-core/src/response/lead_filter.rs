@@ -11,7 +11,7 @@ use crate::units::ratio_to_db;
 
 /// Order of a lead filter's numerator and denominator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(try_from = "usize", into = "usize")]
+#[serde(try_from = "f64", into = "usize")]
 pub enum LeadOrder {
     /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the band.
     First,
@@ -30,12 +30,12 @@ impl LeadOrder {
     }
 }
 
-impl TryFrom<usize> for LeadOrder {
+impl TryFrom<f64> for LeadOrder {
     type Error = String;
 
-    fn try_from(order: usize) -> Result<Self, String> {
+    fn try_from(order: f64) -> Result<Self, String> {
         let orders = [Self::First, Self::Second];
-        let found = orders.into_iter().find(|known| known.number() == order);
+        let found = orders.into_iter().find(|known| known.number() as f64 == order);
         found.ok_or_else(|| format!("order of the lead filters: expected 1 or 2, found {order}"))
     }
 }

@@ -8,6 +8,7 @@ use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
 use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign};
 use crate::dataset::{ConditionId, FlightState};
 use crate::units::{s_to_ms, signed};
+use crate::whole_number::{whole, whole_or_none};
 
 /// Places between two airspeeds at which a schedule is looked at.
 const STEPS: u32 = 100;
@@ -64,6 +65,7 @@ pub struct ScheduleSettings {
 #[derive(Serialize, Deserialize)]
 struct ScheduleEntry {
     kind: FormEntry,
+    #[serde(default, deserialize_with = "whole_or_none")]
     degree: Option<usize>,
     of: ScheduledQuantity,
     delays: bool,
@@ -71,7 +73,7 @@ struct ScheduleEntry {
     airspeed_tolerance_kt: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     second_variable: Option<SecondVariable>,
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_zero", deserialize_with = "whole")]
     tau_degree: usize,
 }
 

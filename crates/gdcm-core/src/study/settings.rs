@@ -11,6 +11,7 @@ use crate::dataset::{Band, Dataset, PairTable};
 use crate::fidelity::CostAverage;
 use crate::schedule::ScheduleSettings;
 use crate::uncertainty::UncertaintySettings;
+use crate::whole_number::whole;
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
@@ -76,6 +77,7 @@ pub struct Settings<R = PairTable<bool>> {
     #[serde(rename = "band_rad_s")]
     pub band: Band,
     /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
+    #[serde(deserialize_with = "whole")]
     pub points: usize,
     /// Weight of the regularisation of the output gains, eq. (7).
     pub alpha_gain: f64,

@@ -11,6 +11,7 @@ use gdcm_core::study::{Analysis, Assessed, ConditionAnalysis};
 use gdcm_core::uncertainty::{Bar, Scalar, VarianceComponent};
 
 use crate::csv_table::write_records;
+use crate::figure::all_channels;
 
 /// What is known of a condition.
 #[derive(Clone)]
@@ -42,10 +43,10 @@ const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
     ("channel", |row| row.name()),
-    ("gain", |row| cell(row.found.own().map(|own| row.gain(own)))),
-    ("delay_s", |row| cell(row.found.own().map(|own| row.delay_s(own)))),
-    ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| row.gain(of)))),
-    ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| row.delay_s(of)))),
+    ("gain", |row| cell(row.found.own().map(|own| own.gain(row.channel)))),
+    ("delay_s", |row| cell(row.found.own().map(|own| own.pure_delay_s(row.channel)))),
+    ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))),
+    ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.pure_delay_s(row.channel)))),
     ("tau_s", |row| cell(row.tau_s(row.found.own()))),
     ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
     ("zero_rad_s", |row| cell(row.filter().map(LeadFilter::zero_rad_s))),
@@ -105,9 +106,7 @@ pub(crate) fn channel_table(
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,
 ) -> io::Result<()> {
-    let dataset = &analysis.study.dataset;
-    let inputs = (0..dataset.inputs().len()).map(Channel::Input);
-    let channels: Vec<Channel> = inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect();
+    let channels = all_channels(&analysis.study.dataset);
     let rows = conditions(analysis, chosen).flat_map(|found| {
         let row = move |&channel: &Channel| ChannelRow { found: found.clone(), channel };
         channels.iter().map(row)
@@ -158,8 +157,8 @@ impl Found<'_> {
 
     /// The lower (0) or upper (1) end of the whole bar, of a gain as a ratio.
     fn end(&self, scalar: Scalar, end: usize) -> String {
-        let level = self.analysis.study.settings.uncertainty.level;
-        let ends = self.bar(scalar).and_then(|bar| bar.interval(level));
+        let level = self.analysis.uncertainty.as_ref().map(|uncertainty| uncertainty.level);
+        let ends = self.bar(scalar).zip(level).and_then(|(bar, level)| bar.interval(level));
         cell(ends.map(|ends| if scalar.is_delay() { ends[end] } else { ends[end].exp() }))
     }
 
@@ -173,21 +172,6 @@ impl ChannelRow<'_> {
     fn name(&self) -> String {
         let (inputs, outputs) = self.found.analysis.study.dataset.names_of_channels();
         self.channel.name(&inputs, &outputs)
-    }
-
-    fn gain(&self, of: &ChannelCorrection) -> f64 {
-        match self.channel {
-            Channel::Input(at) => of.input_gains[at],
-            Channel::Output(at) => of.output_gains[at],
-        }
-    }
-
-    /// Of a correction with leads, what is positive of the signed delay.
-    fn delay_s(&self, of: &ChannelCorrection) -> f64 {
-        match self.channel {
-            Channel::Input(at) => of.input_delays_s[at],
-            Channel::Output(at) => of.output_delays_s[at],
-        }
     }
 
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {

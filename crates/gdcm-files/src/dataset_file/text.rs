@@ -11,6 +11,7 @@ use gdcm_core::dataset::{
     Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft,
     Timing,
 };
+use gdcm_core::whole_number::{whole, whole_or_none};
 use nalgebra::DMatrix;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,7 @@ pub(super) const FORMAT: Format = Format { name: "gdcm-dataset", version: 1 };
 #[derive(Deserialize, Serialize)]
 pub(super) struct DatasetText {
     pub(super) format: String,
+    #[serde(deserialize_with = "whole")]
     pub(super) version: u64,
     pub(super) name: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -71,6 +73,7 @@ pub(super) struct BandText {
 
 #[derive(Deserialize, Serialize)]
 pub(super) struct ConditionText {
+    #[serde(deserialize_with = "whole")]
     pub(super) id: i64,
     pub(super) name: String,
     pub(super) airspeed_kt: f64,
@@ -123,7 +126,7 @@ pub(crate) struct ModelText {
     /// Of an identified model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
     pub(crate) order: Option<usize>,
     /// Names of the channels of a model outside a dataset, empty where its file has none.
     #[serde(skip_serializing_if = "Option::is_none")]

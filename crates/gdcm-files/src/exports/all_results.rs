@@ -4,10 +4,11 @@ use std::collections::BTreeSet;
 
 use gdcm_core::dataset::{Channel, ConditionId, Dataset};
 use gdcm_core::study::Analysis;
+use serde_json::{Value as Tree, json};
 
-use super::matlab_struct::{Layout, Tree, cell_of_texts};
+use super::matlab_struct::{Layout, cell_of_texts};
 use super::{About, Export, ExportFault, Exported, Exporter};
-use crate::corrections_file::{BarEntry, ByName, Corrections, NetGain, channel_table, write_corrections};
+use crate::corrections_file::{channel_table, corrections, write_corrections};
 use crate::mat;
 use crate::variables::{Value, Variable};
 
@@ -46,8 +47,8 @@ impl Exporter for Mat {
     }
 
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
-        let corrections = Corrections::of(of.analysis, &of.source.sha256, &all(of.analysis));
-        let value = corrections_struct(&corrections, &of.analysis.study.dataset);
+        let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
+        let value = corrections_struct(corrections, &of.analysis.study.dataset);
         Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?))
     }
 }
@@ -61,43 +62,42 @@ const LAYOUT: Layout = Layout { by_channel: &["inputs", "outputs"], by_name: &["
 
 /// The fields of `corrections.json`. Lists of responses are matrices of truths with a row for each output and a column for each input,
 /// the figures of `net_gains` stand in the matrices of `net_gain_table`; beside them, what earlier programs wrote keeps its name.
-fn corrections_struct(corrections: &Corrections, dataset: &Dataset) -> Value {
-    // Every type of the file is one of JSON: what fails to be one would have failed when it was written.
-    let mut tree = Tree::of(corrections).unwrap_or(Tree::List(Vec::new()));
-    let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| {
-        let row = |output: &Channel| dataset.inputs().iter().map(|input| of(&output.name, &input.name)).collect();
-        Tree::List(dataset.outputs().iter().map(|output| Tree::List(row(output))).collect())
+fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
+    let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| -> Tree {
+        let row =
+            |output: &Channel| dataset.inputs().iter().map(|input| of(&output.name, &input.name)).collect::<Tree>();
+        dataset.outputs().iter().map(row).collect()
     };
-    let marked = |pairs: &[(String, String)]| {
-        pair_rows(&|output, input| Tree::Truth(pairs.iter().any(|pair| (&*pair.0, &*pair.1) == (output, input))))
+    let marked = |pairs: &Tree| {
+        let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
+        pair_rows(&|output, input| pairs.iter().any(|pair| pair[0] == output && pair[1] == input).into())
     };
-    if let Some(settings) = tree.get_mut("settings") {
-        settings.set("constrained", marked(&corrections.settings.constrained.0));
-        settings.set("ignored", marked(&corrections.settings.ignored.0));
-        if settings.get("coherence_threshold").is_none() {
-            settings.set("coherence_threshold", Tree::Null(()));
-        }
+    let settings = &mut corrections["settings"];
+    for name in ["constrained", "ignored"] {
+        settings[name] = marked(&settings[name]);
     }
-    let conditions = tree.get_mut("conditions").map(Tree::entries_mut).unwrap_or_default();
-    for (condition, of) in conditions.iter_mut().zip(&corrections.conditions) {
-        condition.set("held", marked(&of.held));
-        condition.set("held_out", Tree::Truth(of.held_out));
-        let net_gain = |metric: &dyn Fn(&NetGain) -> Option<f64>| {
+    // Absent where coherence counts for nothing.
+    if settings.get("coherence_threshold").is_none() {
+        settings["coherence_threshold"] = Tree::Null;
+    }
+    for condition in corrections["conditions"].as_array_mut().into_iter().flatten() {
+        condition["held"] = marked(&condition["held"]);
+        condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
+        let net_gains = condition["net_gains"].take();
+        let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
+        let metric = |key: &str, place: Option<usize>| {
             pair_rows(&|output, input| {
-                let found = of.net_gains.iter().find(|net| (&*net.output, &*net.input) == (output, input));
-                found.and_then(metric).map_or(Tree::Null(()), Tree::Number)
+                let found = net_gains.iter().find(|net| net["output"] == output && net["input"] == input);
+                let value = found.and_then(|net| net.get(key));
+                value.and_then(|value| place.map_or(Some(value), |place| value.get(place))).cloned().into()
             })
         };
-        let bar = |metric: fn(&BarEntry) -> Option<f64>| net_gain(&|net| metric(&net.bar));
-        if let Some(Tree::List(entries)) = condition.get("net_gains") {
-            let rows = entries.chunks(dataset.inputs().len()).map(|row| Tree::List(row.to_vec())).collect();
-            condition.set("net_gain_table", Tree::List(rows));
-        }
-        condition.set("net_gains", net_gain(&|net| Some(net.gain)));
-        condition.set("net_gains_low", bar(|bar| bar.interval.map(|[low, _]| low)));
-        condition.set("net_gains_high", bar(|bar| bar.interval.map(|[_, high]| high)));
-        condition.set("u_physics", bar(|bar| bar.u_physics));
-        condition.set("u_identification", bar(|bar| bar.u_identification));
+        condition["net_gain_table"] = net_gains.chunks(dataset.inputs().len()).map(|row| json!(row)).collect();
+        condition["net_gains"] = metric("gain", None);
+        condition["net_gains_low"] = metric("interval", Some(0));
+        condition["net_gains_high"] = metric("interval", Some(1));
+        condition["u_physics"] = metric("u_physics", None);
+        condition["u_identification"] = metric("u_identification", None);
         for (name, solution, field) in [
             ("gain_objective", "gain_solution", "objective"),
             ("gain_lower_bound", "gain_solution", "lower_bound"),
@@ -106,25 +106,24 @@ fn corrections_struct(corrections: &Corrections, dataset: &Dataset) -> Value {
             ("delay_objective_s2", "delay_solution", "objective"),
             ("delay_matched", "delay_solution", "matched"),
         ] {
-            let value = condition.get(solution).and_then(|solution| solution.get(field)).cloned();
-            condition.set(name, value.unwrap_or(Tree::Null(())));
+            condition[name] = condition[solution][field].clone();
         }
     }
-    match (&corrections.schedule, tree.get_mut("schedule").and_then(|schedule| schedule.get_mut("table"))) {
-        (None, _) => tree.set("schedule", Tree::List(Vec::new())),
-        (Some(_), table) => {
-            for row in table.map(Tree::entries_mut).unwrap_or_default() {
-                for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
-                    if let Some(Tree::Object(ByName(delays))) = row.get("delays_s").and_then(|delays| delays.get(side))
-                    {
-                        let delays = delays.iter().map(|(_, delay)| delay.clone()).collect();
-                        row.set(name, Tree::List(delays));
-                    }
-                }
+    // Names and units stand in columns of their own.
+    for side in ["inputs", "outputs"] {
+        corrections.as_object_mut().and_then(|members| members.shift_remove(side));
+    }
+    if corrections["schedule"].is_null() {
+        corrections["schedule"] = json!([]);
+    }
+    for row in corrections["schedule"].get_mut("table").and_then(Tree::as_array_mut).into_iter().flatten() {
+        for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
+            if let Some(delays) = row.get("delays_s").and_then(|delays| delays[side].as_object()) {
+                row[name] = delays.values().cloned().collect();
             }
         }
     }
-    let Value::Struct(mut records) = LAYOUT.value("", &tree) else { return LAYOUT.value("", &tree) };
+    let Value::Struct(mut records) = LAYOUT.value("", &corrections) else { return LAYOUT.value("", &corrections) };
     for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
         let of = |part: fn(&Channel) -> &String| cell_of_texts(channels.iter().map(|channel| part(channel).clone()));
         records.fields.push((format!("{side}s"), vec![of(|channel| &channel.name)]));
@@ -186,9 +185,9 @@ mod tests {
         for study in [altitude, leads] {
             let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
             analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
-            let corrections = Corrections::of(&analysis, "ba78", &all(&analysis));
-            json_paths(&serde_json::to_value(&corrections).unwrap(), "", &mut of_json);
-            struct_paths(&corrections_struct(&corrections, &study.dataset), "", &mut of_matlab);
+            let corrections = corrections(&analysis, "ba78", &all(&analysis));
+            json_paths(&corrections, "", &mut of_json);
+            struct_paths(&corrections_struct(corrections, &study.dataset), "", &mut of_matlab);
         }
         let of_json = of_json.iter().map(|path| path.replace(".net_gains.", ".net_gain_table."));
         let missing: Vec<String> = of_json.filter(|path| !of_matlab.contains(path)).collect();

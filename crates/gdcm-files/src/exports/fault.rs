@@ -1,6 +1,7 @@
 //! Why something cannot be exported.
 
 use gdcm_core::dataset::ConditionId;
+use gdcm_core::message_text::quoted;
 use gdcm_core::schedule::ScheduleError;
 
 use crate::variables::VariableFault;
@@ -9,27 +10,21 @@ use crate::variables::VariableFault;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
     /// A curve cannot be computed.
-    #[error("the {curve} of {channel} has {flaw}; correct it before it is exported")]
+    #[error("the {curve} of {channel} has a number that is not finite; correct it before it is exported")]
     Curve {
         /// The channel.
         channel: String,
         /// "gain" or "delay".
         curve: &'static str,
-        /// What is wrong with it.
-        flaw: &'static str,
     },
-    /// The range of airspeeds is none.
-    #[error(
-        "the correction has no range of airspeeds: its ends, mean and half range must be finite, and the range not negative"
-    )]
-    Range,
     /// The airspeeds asked for make no table.
     #[error("the airspeeds of the table must be finite, increase, and be at least one")]
     Breakpoints,
     /// A file of MATLAB has a name that no function can have.
     #[error(
-        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and not a name \
-         that the file uses itself; found \"{found}\""
+        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
+         keyword nor a name that the file uses itself; found {}",
+        quoted(found)
     )]
     FunctionName {
         /// The name of the file without its ending.
@@ -89,6 +84,6 @@ pub enum ExportFault {
 impl ExportFault {
     /// Whether it is the analysis that has not what is asked for; otherwise something else would have to be asked.
     pub fn is_of_analysis(&self) -> bool {
-        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. } | Self::Range)
+        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. })
     }
 }

@@ -1,11 +1,15 @@
-//! The gains and delays of a correction at some airspeeds, for lookup tables that are linear between them: in text, and for MATLAB.
+//! The gains and delays of a schedule at some airspeeds, for lookup tables that are linear between them: in text, and for MATLAB.
 
 use std::fmt::Write;
+use std::iter::once;
 
-use super::curve::{LookupTable, comment, number};
+use gdcm_core::correction::Channel;
+
 use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row, scalar, text};
-use super::scheduled_correction::{NamedCurve, ScheduledCorrection, SecondArgument};
+use super::programs::comment;
+use super::scheduled::{Scheduled, number};
 use super::{About, Export, ExportFault, Exported, Exporter};
+use crate::figure::all_channels;
 use crate::mat;
 use crate::variables::Variable;
 
@@ -20,9 +24,8 @@ impl Exporter for TableCsv {
     }
 
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
-        let (correction, points) = (of.scheduled()?, breakpoints(of)?);
-        let remarks = remarks(&correction, &points)?;
-        Ok(Exported::bytes(table_csv(&correction, &points)?).with(remarks))
+        let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
+        Ok(Exported::bytes(table.csv()).with(table.remarks()))
     }
 }
 
@@ -37,114 +40,210 @@ impl Exporter for TableMat {
     }
 
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
-        let (correction, points) = (of.scheduled()?, breakpoints(of)?);
-        let remarks = remarks(&correction, &points)?;
-        Ok(Exported::bytes(mat::write(&[table_variable(&correction, &points)?])?).with(remarks))
+        let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
+        Ok(Exported::bytes(mat::write(&[table.variable()])?).with(table.remarks()))
     }
 }
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// The airspeeds asked for, or else the distinct ones of the scheduled conditions \[kt\], rising.
-fn breakpoints(of: &Export) -> Result<Vec<f64>, ExportFault> {
-    if let Some(points) = &of.request.breakpoints_kt {
-        return Ok(points.clone());
+/// What a column holds: a gain, or a time \[s\].
+#[derive(Debug, PartialEq)]
+struct Kind {
+    name: &'static str,
+    /// Its part in the names of fields.
+    field: &'static str,
+    is_time: bool,
+}
+
+const GAIN: Kind = Kind { name: "gain", field: "gains", is_time: false };
+const DELAY: Kind = Kind { name: "delay", field: "delays_s", is_time: true };
+const LEAD: Kind = Kind { name: "lead numerator", field: "lead_numerators_s", is_time: true };
+
+impl Kind {
+    /// The error of a value against the true one: \[%\] of a gain, \[ms\] of a time.
+    fn error(&self, value: f64, truth: f64) -> f64 {
+        match value - truth {
+            // Both zero: no error; a table that misses a zero has no error in percent.
+            0.0 => 0.0,
+            difference if self.is_time => 1e3 * difference.abs(),
+            difference => 100.0 * (difference / truth).abs(),
+        }
     }
-    let mut airspeeds = of.schedule()?.airspeeds.values_kt.clone();
-    airspeeds.sort_by(f64::total_cmp);
-    airspeeds.dedup();
-    Ok(airspeeds)
 }
 
-/// What is to be known of the correction, and how far the table lies from the curves that it does not hold exactly.
-fn remarks(correction: &ScheduledCorrection, points: &[f64]) -> Result<Vec<String>, ExportFault> {
-    let table = BreakpointTable::of(correction, points)?;
-    let columns = table.columns.iter().filter(|column| column.error.error > 0.0);
-    let off =
-        columns.map(|column| format!("table of the {}: off by up to {}", column.of.words(), column.error_words()));
-    Ok(correction.notes.iter().cloned().chain(off).collect())
-}
-
-/// All curves of a correction at some airspeeds.
-struct BreakpointTable<'c> {
+/// A schedule at some airspeeds.
+struct BreakpointTable<'e> {
+    of: Scheduled<'e>,
     /// Airspeeds \[kt\], increasing.
-    airspeed_kt: Vec<f64>,
-    /// Values of the second variable, increasing; none where there is none. Each stands for all airspeeds, one after the other.
-    second: Vec<f64>,
-    /// One for each gain, each delay and each lead filter.
-    columns: Vec<BreakpointColumn<'c>>,
+    airspeeds_kt: Vec<f64>,
+    /// Airspeed and second variable of each row: all airspeeds for each value of the second variable.
+    rows: Vec<(f64, Option<f64>)>,
+    /// One for each gain, each delay and each lead filter: of every input, then of every output.
+    columns: Vec<Column>,
 }
 
-/// One curve at the airspeeds of a table.
-struct BreakpointColumn<'c> {
-    /// The curve, and what it is of.
-    of: NamedCurve<'c>,
-    /// Its values: gains, or times \[s\].
+/// What a channel has at the airspeeds of a table.
+struct Column {
+    kind: &'static Kind,
+    channel: Channel,
+    name: String,
     values: Vec<f64>,
-    /// How far the table lies from it at most: \[%\] of a gain, \[ms\] of a time.
+    /// How far the table lies from the schedule at most: \[%\] of a gain, \[ms\] of a time.
     error: TableError,
 }
 
-impl<'c> BreakpointTable<'c> {
-    /// The table of a correction at the airspeeds `breakpoints_kt`.
+impl<'e> BreakpointTable<'e> {
+    /// The table at the airspeeds asked for, or else at the distinct ones of the scheduled conditions \[kt\].
     ///
     /// # Errors
     /// [`ExportFault::Breakpoints`] where these do not increase.
-    fn of(correction: &'c ScheduledCorrection, breakpoints_kt: &[f64]) -> Result<Self, ExportFault> {
-        correction.check()?;
-        let increasing = breakpoints_kt.windows(2).all(|pair| pair[0] < pair[1]);
-        if breakpoints_kt.is_empty() || !increasing || !breakpoints_kt.iter().all(|point| point.is_finite()) {
+    fn of(of: Scheduled<'e>, breakpoints_kt: Option<&[f64]>) -> Result<Self, ExportFault> {
+        of.check()?;
+        let distinct = || {
+            let mut airspeeds_kt = of.schedule.airspeeds.values_kt.clone();
+            airspeeds_kt.sort_by(f64::total_cmp);
+            airspeeds_kt.dedup();
+            airspeeds_kt
+        };
+        let airspeeds_kt = breakpoints_kt.map_or_else(distinct, <[f64]>::to_vec);
+        let increasing = airspeeds_kt.windows(2).all(|pair| pair[0] < pair[1]);
+        if airspeeds_kt.is_empty() || !increasing || !airspeeds_kt.iter().all(|point| point.is_finite()) {
             return Err(ExportFault::Breakpoints);
         }
         // Ends and middle: between them the effect is nearly a straight line.
-        let second =
-            correction.second.as_ref().map_or_else(Vec::new, |SecondArgument { range: (least, most), .. }| {
-                vec![*least, 0.5 * (least + most), *most]
-            });
-        let places: Vec<Option<f64>> =
-            if second.is_empty() { vec![None] } else { second.iter().copied().map(Some).collect() };
-        let column = |of: NamedCurve<'c>| {
-            let rows = places.iter().flat_map(|second| breakpoints_kt.iter().map(move |&point| (point, *second)));
-            let values = rows.map(|(point, second)| of.curve.at(correction.at(point, second))).collect();
-            let errors = places.iter().map(|second| error(correction, (breakpoints_kt, *second), &of));
-            let worst = errors.reduce(|worst, found| if found.error > worst.error { found } else { worst });
-            let error = worst.unwrap_or(TableError { error: 0.0, airspeed_kt: breakpoints_kt[0] });
-            BreakpointColumn { error, of, values }
-        };
-        let columns = correction.curves().map(column).collect();
-        Ok(Self { airspeed_kt: breakpoints_kt.to_vec(), columns, second })
+        let second = of
+            .schedule
+            .second
+            .as_ref()
+            .map_or_else(|| vec![None], |term| [term.range[0], term.middle(), term.range[1]].map(Some).to_vec());
+        let at = |second: Option<f64>| airspeeds_kt.iter().map(move |&airspeed_kt| (airspeed_kt, second));
+        let rows = second.iter().flat_map(|&second| at(second)).collect();
+        let mut table = Self { of, airspeeds_kt, rows, columns: Vec::new() };
+        for channel in all_channels(of.dataset) {
+            let evaluate = |kt, second| of.schedule.evaluate(kt, second);
+            let gain = |kt, second| evaluate(kt, second).gain(channel);
+            let delay_s = |kt, second| evaluate(kt, second).pure_delay_s(channel);
+            table.columns.push(table.column(channel, &GAIN, &second, gain));
+            table.columns.push(table.column(channel, &DELAY, &second, delay_s));
+            if let Some(zero_s) = of.zero_s(channel) {
+                let zero_s = |kt, _| zero_s.figures.at(&of.schedule.airspeeds, kt);
+                table.columns.push(table.column(channel, &LEAD, &second, zero_s));
+            }
+        }
+        Ok(table)
     }
 
-    /// Airspeed \[kt\] and second variable of each row.
-    fn rows(&self) -> Vec<(f64, Option<f64>)> {
-        if self.second.is_empty() {
-            return self.airspeed_kt.iter().map(|&airspeed| (airspeed, None)).collect();
+    /// The column of values at an airspeed \[kt\] and each of these values of the second variable.
+    fn column(
+        &self,
+        channel: Channel,
+        kind: &'static Kind,
+        second: &[Option<f64>],
+        value: impl Fn(f64, Option<f64>) -> f64,
+    ) -> Column {
+        let (inputs, outputs) = self.of.dataset.names_of_channels();
+        let airspeeds = &self.of.schedule.airspeeds;
+        let range_kt = [airspeeds.min_kt, airspeeds.max_kt];
+        let errors = second.iter().map(|&second| {
+            let truth = |airspeed_kt: f64| value(airspeed_kt, second);
+            TableError::greatest(&self.airspeeds_kt, range_kt, truth, |value, truth| kind.error(value, truth))
+        });
+        let worst = |worst: TableError, found: TableError| if found.error > worst.error { found } else { worst };
+        let none = TableError { error: 0.0, airspeed_kt: range_kt[0] };
+        Column {
+            kind,
+            channel,
+            name: channel.name(&inputs, &outputs),
+            values: self.rows.iter().map(|&(airspeed_kt, second)| value(airspeed_kt, second)).collect(),
+            error: errors.reduce(worst).unwrap_or(none),
         }
-        let of = |&second: &f64| self.airspeed_kt.iter().map(move |&airspeed| (airspeed, Some(second)));
-        self.second.iter().flat_map(of).collect()
+    }
+
+    /// What is to be known of the schedule, and how far the table lies from it.
+    fn remarks(&self) -> Vec<String> {
+        let off = self.columns.iter().filter(|column| column.error.error > 0.0);
+        let off = off.map(|column| format!("table of the {}: off by up to {}", column.words(), column.error_words()));
+        self.of.notes().into_iter().chain(off).collect()
+    }
+
+    /// Lines that begin with # say what it is and how far each column lies from its curve at most.
+    fn csv(&self) -> String {
+        let mut text: String = self.of.heading(&self.of.notes()).iter().map(|line| format!("# {line}\n")).collect();
+        text.push_str(
+            "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
+        );
+        for column in &self.columns {
+            let _ = writeln!(text, "# {}: {}", comment(&column.words()), column.error_words());
+        }
+        text.push_str("airspeed [kt]");
+        if let Some(term) = &self.of.schedule.second {
+            let _ = write!(text, ",{} [{}]", term.variable.name(), term.variable.unit());
+        }
+        for column in &self.columns {
+            let unit = if column.kind.is_time { "s" } else { "-" };
+            let _ = write!(text, ",\"{} [{unit}]\"", comment(&column.words()).replace('"', "\"\""));
+        }
+        text.push('\n');
+        for (row, (airspeed_kt, second)) in self.rows.iter().enumerate() {
+            let values = self.columns.iter().map(|column| column.values[row]);
+            let cells = once(*airspeed_kt).chain(*second).chain(values).map(number);
+            text.push_str(&cells.collect::<Vec<_>>().join(","));
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The variable `gdcm_table`: the airspeeds, and for each input and output a column of gains and one of delays \[s\], where there are
+    /// leads one of their numerators \[s\] too, to be interpolated linearly between them; with the greatest error of that.
+    fn variable(&self) -> Variable {
+        let schedule = self.of.schedule;
+        let (inputs, outputs) = self.of.dataset.names_of_channels();
+        let mut fields = Fields::default();
+        fields.add("about", cell_of_texts(self.of.heading(&self.of.notes())));
+        fields.add("airspeed_kt", column(self.rows.iter().map(|(airspeed_kt, _)| *airspeed_kt)));
+        if let Some(term) = &schedule.second {
+            let name = format!("{}_{}", term.variable.name(), term.variable.unit());
+            fields.add(&name, column(self.rows.iter().filter_map(|(_, second)| *second)));
+        }
+        for (side, names) in [("input", inputs), ("output", outputs)] {
+            fields.add(&format!("{side}s"), cell_of_texts(names));
+            for kind in [&GAIN, &DELAY, &LEAD].into_iter().take(if schedule.leads.is_some() { 3 } else { 2 }) {
+                let is_of = |column: &&Column| column.side() == side && column.kind == kind;
+                let columns: Vec<&Column> = self.columns.iter().filter(is_of).collect();
+                let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
+                fields.add(&format!("{side}_{}", kind.field), matrix(self.rows.len(), columns.len(), values));
+                let unit = if kind.is_time { "ms" } else { "percent" };
+                let name = format!("{side}_{}_error_{unit}", kind.name.replace(' ', "_"));
+                fields.add(&name, row(columns.iter().map(|column| column.error.error)));
+            }
+        }
+        if let Some(leads) = &schedule.leads {
+            fields.add("lead_order", scalar(leads.design.settings().order.number() as f64));
+            fields.add("lead_lag_s", scalar(leads.design.lag_s()));
+        }
+        fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
+        Variable { name: "gdcm_table".to_owned(), value: fields.record() }
     }
 }
 
-impl BreakpointColumn<'_> {
+impl Column {
+    fn side(&self) -> &'static str {
+        if matches!(self.channel, Channel::Input(_)) { "input" } else { "output" }
+    }
+
+    /// What it is: "gain of input LON".
+    fn words(&self) -> String {
+        format!("{} of {} {}", self.kind.name, self.side(), self.name)
+    }
+
     /// The greatest error in words: "1.200e0 % at 62.000 kt".
     fn error_words(&self) -> String {
-        let unit = if self.of.is_time() { "ms" } else { "%" };
+        let unit = if self.kind.is_time { "ms" } else { "%" };
         let TableError { error, airspeed_kt } = self.error;
         let place = if error > 0.0 { format!(" at {airspeed_kt:.3} kt") } else { String::new() };
         format!("{error:.3e} {unit}{place}")
     }
-}
-
-fn error(correction: &ScheduledCorrection, (points, second): (&[f64], Option<f64>), of: &NamedCurve) -> TableError {
-    let truth = |airspeed: f64| of.curve.at(correction.at(airspeed, second));
-    let range = correction.airspeed_range_kt;
-    if of.is_time() {
-        let milliseconds = |value: f64, truth: f64| 1e3 * (value - truth).abs();
-        return TableError::greatest(points, range, truth, milliseconds);
-    }
-    // Both zero: no error; a table that misses a zero has no error in percent.
-    let percent = |value: f64, truth: f64| if value == truth { 0.0 } else { 100.0 * ((value - truth) / truth).abs() };
-    TableError::greatest(points, range, truth, percent)
 }
 
 /// Intervals of the grid on which the greatest error is looked for.
@@ -166,19 +265,19 @@ impl TableError {
     /// true one. A grid finds the neighbourhood, the golden section the place.
     fn greatest(
         points: &[f64],
-        range: (f64, f64),
+        range_kt: [f64; 2],
         curve: impl Fn(f64) -> f64,
         measure: impl Fn(f64, f64) -> f64,
     ) -> Self {
-        let values = points.iter().map(|&point| curve(point)).collect();
-        let table = LookupTable { airspeed_kt: points.to_vec(), values };
-        let error = |x: f64| measure(table.at(x), curve(x));
-        let step = (range.1 - range.0) / GRID as f64;
-        let mut best = Self { error: error(range.0), airspeed_kt: range.0 };
+        let values: Vec<f64> = points.iter().map(|&point| curve(point)).collect();
+        let error = |x: f64| measure(interpolated(points, &values, x), curve(x));
+        let [least, most] = range_kt;
+        let step = (most - least) / GRID as f64;
+        let mut best = Self { error: error(least), airspeed_kt: least };
         for index in 1..=GRID {
-            best.improve(error, range.0 + index as f64 * step);
+            best.improve(error, least + index as f64 * step);
         }
-        let (mut low, mut high) = ((best.airspeed_kt - step).max(range.0), (best.airspeed_kt + step).min(range.1));
+        let (mut low, mut high) = ((best.airspeed_kt - step).max(least), (best.airspeed_kt + step).min(most));
         let ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
             let (left, right) = (high - ratio * (high - low), low + ratio * (high - low));
@@ -197,137 +296,100 @@ impl TableError {
     }
 }
 
-/// Writes a table (CSV) of all gains and delays at the airspeeds `breakpoints_kt`, for lookup tables that are linear between them.
-/// Lines that begin with # say what it is and how far each column lies from its curve at most.
-pub(super) fn table_csv(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Result<String, ExportFault> {
-    let table = BreakpointTable::of(correction, breakpoints_kt)?;
-    let mut text = correction.comment_lines("#");
-    text.push_str(
-        "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
-    );
-    for column in &table.columns {
-        let _ = writeln!(text, "# {}: {}", comment(&column.of.words()), column.error_words());
-    }
-    text.push_str("airspeed [kt]");
-    if let Some(second) = &correction.second {
-        let _ = write!(text, ",{}", second.words);
-    }
-    for BreakpointColumn { of, .. } in &table.columns {
-        let unit = if of.is_time() { " [s]" } else { " [-]" };
-        let NamedCurve { side, kind, name, .. } = of;
-        let _ = write!(text, ",\"{kind} of {side} {}{unit}\"", comment(name).replace('"', "\"\""));
-    }
-    text.push('\n');
-    for (row, (airspeed, second)) in table.rows().into_iter().enumerate() {
-        text.push_str(&number(airspeed));
-        if let Some(second) = second {
-            let _ = write!(text, ",{}", number(second));
-        }
-        for column in &table.columns {
-            let _ = write!(text, ",{}", number(column.values[row]));
-        }
-        text.push('\n');
-    }
-    Ok(text)
-}
-
-/// The variable `gdcm_table`: the airspeeds `breakpoints_kt`, and for each input and output a column of gains and one of delays \[s\],
-/// where there are leads one of their numerators \[s\] too, to be interpolated linearly between them; with the greatest error of that.
-fn table_variable(correction: &ScheduledCorrection, breakpoints_kt: &[f64]) -> Result<Variable, ExportFault> {
-    let table = BreakpointTable::of(correction, breakpoints_kt)?;
-    let rows = table.rows().len();
-    let of = |side: &str, kind: &str| -> Vec<&BreakpointColumn<'_>> {
-        table.columns.iter().filter(|column| column.of.side == side && column.of.kind == kind).collect()
-    };
-    let mut fields = Fields::default();
-    fields.add("about", cell_of_texts(correction.heading()));
-    fields.add("airspeed_kt", column(table.rows().into_iter().map(|(airspeed, _)| airspeed)));
-    if let Some(second) = &correction.second {
-        fields.add(second.name, column(table.rows().into_iter().filter_map(|(_, second)| second)));
-    }
-    for (side, channels) in [("input", &correction.inputs), ("output", &correction.outputs)] {
-        fields.add(&format!("{side}s"), cell_of_texts(channels.iter().map(|channel| channel.name.clone())));
-        let kinds = [("gain", "gain", "percent"), ("delay", "delay", "ms"), ("lead numerator", "lead_numerator", "ms")];
-        for (kind, field, unit) in kinds.into_iter().take(if correction.lead.is_some() { 3 } else { 2 }) {
-            let columns = of(side, kind);
-            let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
-            let suffix = if kind == "gain" { "" } else { "_s" };
-            fields.add(&format!("{side}_{field}s{suffix}"), matrix(rows, columns.len(), values));
-            let errors = columns.iter().map(|column| column.error.error);
-            fields.add(&format!("{side}_{field}_error_{unit}"), row(errors));
+/// What a table gives at an airspeed: linear between its points, the end values outside.
+fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
+    let above = points.partition_point(|&point| point <= airspeed_kt);
+    match (above.checked_sub(1), points.get(above)) {
+        (None, _) => values[0],
+        (Some(below), None) => values[below],
+        (Some(below), Some(&end)) => {
+            let part = (airspeed_kt - points[below]) / (end - points[below]);
+            values[below] + part * (values[above] - values[below])
         }
     }
-    if let Some(lead) = correction.lead {
-        fields.add("lead_order", scalar(lead.order as f64));
-        fields.add("lead_lag_s", scalar(lead.lag_s));
-    }
-    fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
-    Ok(Variable { name: "gdcm_table".to_owned(), value: fields.record() })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::curve::Curve;
-    use super::super::scheduled_correction::tests::example;
+    use gdcm_core::correction::ChannelCorrection;
+    use gdcm_core::schedule::SecondVariable;
+    use gdcm_core::study::{Analysis, Engine, Study, Unobserved};
+
+    use super::super::ExportSource;
     use super::*;
+    use crate::embedded_example;
     use crate::text::read_table;
     use crate::variables::{ReadingBudget, Value};
 
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {
         // x^2 between 0 and h is at most h^2/4 below its chord.
-        let found = TableError::greatest(&[0.0, 10.0, 16.0], (0.0, 16.0), |x| x * x, |a, b| (a - b).abs());
+        let found = TableError::greatest(&[0.0, 10.0, 16.0], [0.0, 16.0], |x| x * x, |a, b| (a - b).abs());
         assert!((found.error - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5, "{found:?}");
     }
 
     #[test]
     fn beyond_the_table_its_end_values_count() {
-        let found = TableError::greatest(&[2.0, 4.0], (0.0, 4.0), |x| x, |a, b| (a - b).abs());
+        let found = TableError::greatest(&[2.0, 4.0], [0.0, 4.0], |x| x, |a, b| (a - b).abs());
         assert_eq!(found, TableError { error: 2.0, airspeed_kt: 0.0 });
     }
 
-    const POINTS: [f64; 5] = [0.0, 20.0, 40.0, 60.0, 80.0];
+    const POINTS: [f64; 4] = [20.0, 45.0, 100.0, 150.0];
+
+    fn analysis(second: Option<SecondVariable>) -> Analysis {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        study.settings.schedule.delays = true;
+        study.settings.schedule.second = second;
+        Engine::default().analyze(&study, &Unobserved).unwrap()
+    }
+
+    fn table<'a>(analysis: &'a Analysis, source: &'a ExportSource) -> BreakpointTable<'a> {
+        let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
+        BreakpointTable::of(Scheduled { schedule, dataset, source }, Some(&POINTS)).unwrap()
+    }
+
+    fn source() -> ExportSource {
+        ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() }
+    }
 
     #[test]
-    fn the_table_holds_the_curves_at_its_airspeeds() {
-        let correction = example();
-        let text = table_csv(&correction, &POINTS).unwrap();
-        let table = read_table(&text, &ReadingBudget::new(1 << 20)).unwrap();
-        assert_eq!(table.columns[0], POINTS);
-        assert_eq!(table.columns.len(), 7);
-        assert_eq!(table.units[2].as_deref(), Some("s"));
-        for (named, column) in correction.curves().zip(&table.columns[1..]) {
-            let expected: Vec<f64> = POINTS.iter().map(|&point| named.curve.at(correction.clamp(point))).collect();
-            assert_eq!(column, &expected);
+    fn the_table_holds_the_schedule_at_its_airspeeds() {
+        let (analysis, source) = (analysis(None), source());
+        let (table, schedule) = (table(&analysis, &source), analysis.schedule.as_ref().unwrap());
+        let read = read_table(&table.csv(), &ReadingBudget::new(1 << 20)).unwrap();
+        assert_eq!((&read.columns[0][..], read.columns.len()), (&POINTS[..], 21));
+        assert_eq!(read.units[2].as_deref(), Some("s"));
+        let of = |value: &dyn Fn(&ChannelCorrection) -> f64| POINTS.map(|kt| value(&schedule.at(kt))).to_vec();
+        assert_eq!(read.columns[3], of(&|correction| correction.input_gains[1]));
+        assert_eq!(read.columns[10], of(&|correction| correction.output_delays_s[0]));
+        let Value::Struct(of_matlab) = table.variable().value else { panic!("no struct") };
+        let Some([Value::Array(gains)]) = of_matlab.field("input_gains") else { panic!("no gains") };
+        assert_eq!((&gains.shape[..], &gains.re[4..8]), (&[4, 4][..], &read.columns[3][..]));
+        let Some([Value::Array(errors)]) = of_matlab.field("output_delay_error_ms") else { panic!("no errors") };
+        assert_eq!(errors.shape, [1, 6]);
+    }
+
+    #[test]
+    fn the_greatest_error_stands_above_the_table_and_airspeeds_have_to_increase() {
+        let (analysis, source) = (analysis(None), source());
+        let table = table(&analysis, &source);
+        let worst = table.columns[0].error;
+        assert!(worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt), "{worst:?}");
+        let line = format!("\n# gain of input LON: {:.3e} % at {:.3} kt\n", worst.error, worst.airspeed_kt);
+        assert!(table.csv().contains(&line), "{}", table.csv());
+        for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {
+            assert!(matches!(BreakpointTable::of(table.of, Some(points)), Err(ExportFault::Breakpoints)), "{points:?}");
         }
     }
 
     #[test]
-    fn the_greatest_error_stands_above_the_table() {
-        let mut correction = example();
-        correction.inputs.truncate(1);
-        correction.outputs.clear();
-        correction.inputs[0].name = "LAT".to_owned();
-        let coefficients = vec![0.0, 0.0, 0.16];
-        correction.inputs[0].delay_s = Curve::Polynomial { of_logarithm: false, coefficients };
-        let text = table_csv(&correction, &[0.0, 80.0]).unwrap();
-        assert!(text.contains("# delay of input LAT: 1.600e2 ms at 40.000 kt"), "{text}");
-        assert_eq!(table_csv(&correction, &[]), Err(ExportFault::Breakpoints));
-    }
-
-    #[test]
-    fn each_channel_has_a_column_of_gains_and_one_of_delays() {
-        let correction = example();
-        let points = [0.0, 30.0, 80.0];
-        let Value::Struct(table) = table_variable(&correction, &points).unwrap().value else { panic!("no struct") };
-        for (field, curve) in
-            [("input_gains", &correction.inputs[1].gain), ("input_delays_s", &correction.inputs[1].delay_s)]
-        {
-            let Some([Value::Array(array)]) = table.field(field) else { panic!("no {field}") };
-            assert_eq!(array.shape, [3, 2]);
-            assert_eq!(array.re[3..], points.map(|point| curve.at(correction.clamp(point))), "{field}, second column");
-        }
-        let Some([Value::Array(errors)]) = table.field("output_delay_error_ms") else { panic!("no errors") };
-        assert_eq!(errors.shape, [1, 1]);
+    fn every_airspeed_stands_at_three_values_of_a_second_variable() {
+        let (analysis, source) = (analysis(Some(SecondVariable::Altitude)), source());
+        let table = table(&analysis, &source);
+        let schedule = analysis.schedule.as_ref().unwrap();
+        assert_eq!(table.rows.len(), 3 * POINTS.len());
+        let (airspeed_kt, altitude) = table.rows[9];
+        assert_eq!(table.columns[0].values[9], schedule.evaluate(airspeed_kt, altitude).input_gains[0]);
+        assert!(table.csv().contains("\nairspeed [kt],altitude [ft],\"gain of input LON [-]\""), "{}", table.csv());
     }
 }

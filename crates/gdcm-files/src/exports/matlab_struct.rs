@@ -1,26 +1,13 @@
 //! Anything that serde serializes as values of MATLAB: one schema for JSON and for `.mat`.
 
-use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
 
-use crate::corrections_file::ByName;
 use crate::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
 
 /// Longest name that MATLAB takes (`namelengthmax`).
 pub(super) const LONGEST_NAME: usize = 63;
 
-/// What serde serializes, as JSON holds it, with the members of objects in their order.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
-pub(super) enum Tree {
-    Null(()),
-    Truth(bool),
-    Number(f64),
-    Text(String),
-    List(Vec<Tree>),
-    Object(ByName<Tree>),
-}
-
-static NULL: Tree = Tree::Null(());
+static NULL: Json = Json::Null;
 
 /// Which members are not simply lists and objects.
 pub(super) struct Layout {
@@ -32,106 +19,53 @@ pub(super) struct Layout {
     pub(super) columns: &'static [&'static str],
 }
 
-impl Tree {
-    /// The tree of anything that serde serializes.
-    pub(super) fn of(data: &impl Serialize) -> serde_json::Result<Self> {
-        serde_json::from_str(&serde_json::to_string(data)?)
-    }
+/// A number, or null, which stands for none.
+fn is_number(json: &Json) -> bool {
+    matches!(json, Json::Number(_) | Json::Null)
+}
 
-    /// A member of an object.
-    pub(super) fn get(&self, name: &str) -> Option<&Self> {
-        let Self::Object(members) = self else { return None };
-        members.get(name)
-    }
-
-    /// The same, to be changed.
-    pub(super) fn get_mut(&mut self, name: &str) -> Option<&mut Self> {
-        let Self::Object(ByName(members)) = self else { return None };
-        members.iter_mut().find(|(named, _)| named == name).map(|(_, member)| member)
-    }
-
-    /// Adds a member to an object, or replaces it.
-    pub(super) fn set(&mut self, name: &str, value: Self) {
-        match self.get_mut(name) {
-            Some(member) => *member = value,
-            None => {
-                if let Self::Object(ByName(members)) = self {
-                    members.push((name.to_owned(), value));
-                }
-            }
-        }
-    }
-
-    /// The entries of a list, to be changed.
-    pub(super) fn entries_mut(&mut self) -> &mut [Self] {
-        match self {
-            Self::List(entries) => entries,
-            _ => &mut [],
-        }
-    }
-
-    /// The member at a place of an object; null where there is none.
-    fn member_at(&self, place: usize) -> &Self {
-        match self {
-            Self::Object(ByName(members)) => members.get(place).map_or(&NULL, |(_, member)| member),
-            _ => &NULL,
-        }
-    }
-
-    fn is_object(&self) -> bool {
-        matches!(self, Self::Object(_))
-    }
-
-    fn is_number(&self) -> bool {
-        matches!(self, Self::Number(_) | Self::Null(()))
-    }
-
-    fn number(&self) -> f64 {
-        if let Self::Number(number) = self { *number } else { f64::NAN }
-    }
+/// The number; NaN where there is none.
+fn number(json: &Json) -> f64 {
+    json.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Layout {
-    /// The value of a tree: objects are structs, lists of objects arrays of structs, rectangular lists of numbers matrices, lists of
+    /// The value of JSON: objects are structs, lists of objects arrays of structs, rectangular lists of numbers matrices, lists of
     /// texts columns of cells; what is null is NaN.
-    pub(super) fn value(&self, name: &str, tree: &Tree) -> Value {
-        match tree {
-            Tree::Null(()) => scalar(f64::NAN),
-            Tree::Truth(flag) => truth(*flag),
-            Tree::Number(number) => scalar(*number),
-            Tree::Text(words) => text(words),
-            Tree::List(entries) => self.list(name, entries),
-            Tree::Object(ByName(members)) if self.by_channel.contains(&name) => {
-                self.gathered(&[members.len()], members.iter().map(|(_, member)| member).collect())
+    pub(super) fn value(&self, name: &str, json: &Json) -> Value {
+        match json {
+            Json::Null | Json::Number(_) => scalar(number(json)),
+            Json::Bool(flag) => truth(*flag),
+            Json::String(words) => text(words),
+            Json::Array(entries) => self.list(name, entries),
+            Json::Object(members) if self.by_channel.contains(&name) => {
+                self.gathered(&[members.len()], members.values().collect())
             }
-            Tree::Object(ByName(members)) if self.by_name.contains(&name) => {
+            Json::Object(members) if self.by_name.contains(&name) => {
                 let mut fields = Fields::default();
-                fields.add("name", cell_of_texts(members.iter().map(|(name, _)| name.clone())));
-                let values = members.iter().map(|(_, member)| member).collect();
-                fields.add("value", self.gathered(&[members.len()], values));
+                fields.add("name", cell_of_texts(members.keys().cloned()));
+                fields.add("value", self.gathered(&[members.len()], members.values().collect()));
                 fields.record()
             }
-            Tree::Object(_) => self.records(&[tree]),
+            Json::Object(_) => self.records(&[json]),
         }
     }
 
-    fn list(&self, name: &str, entries: &[Tree]) -> Value {
+    fn list(&self, name: &str, entries: &[Json]) -> Value {
         if entries.is_empty() {
             return Value::Cell(CellArray { shape: vec![0, 1], values: Vec::new() });
         }
-        let all = |fits: fn(&Tree) -> bool| entries.iter().all(fits);
-        if all(|entry| entry.is_object()) {
-            let entries: Vec<&Tree> = entries.iter().collect();
+        if entries.iter().all(Json::is_object) {
+            let entries: Vec<&Json> = entries.iter().collect();
             return match self.columns.contains(&name) {
                 true => self.gathered(&[entries.len()], entries),
                 false => self.records(&entries),
             };
         }
-        if all(Tree::is_number) {
-            return row(entries.iter().map(Tree::number));
+        if entries.iter().all(is_number) {
+            return row(entries.iter().map(number));
         }
-        let rows: Option<Vec<&[Tree]>> =
-            entries.iter().map(|entry| if let Tree::List(row) = entry { Some(row.as_slice()) } else { None }).collect();
+        let rows: Option<Vec<&Vec<Json>>> = entries.iter().map(Json::as_array).collect();
         match rows.as_deref() {
             Some([first, rest @ ..]) if rest.iter().all(|row| row.len() == first.len()) => {
                 let leaves = rows.iter().flatten().copied().flatten().collect();
@@ -142,7 +76,7 @@ impl Layout {
     }
 
     /// A row of structs that all have the same fields; what one lacks is empty there.
-    fn records(&self, objects: &[&Tree]) -> Value {
+    fn records(&self, objects: &[&Json]) -> Value {
         let of = |name: &str| {
             let values = objects.iter().map(|object| object.get(name));
             values
@@ -154,17 +88,18 @@ impl Layout {
     }
 
     /// Leaves of an array of this shape, its last index running fastest: of objects a struct of arrays, of numbers an array.
-    fn gathered(&self, shape: &[usize], leaves: Vec<&Tree>) -> Value {
+    fn gathered<'j>(&self, shape: &[usize], leaves: Vec<&'j Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             let mut fields = Fields::default();
             for name in names_of(&leaves) {
-                let values: Vec<&Tree> = leaves.iter().map(|leaf| leaf.get(name).unwrap_or(&NULL)).collect();
-                let lengths = values
-                    .iter()
-                    .filter_map(|value| if let Tree::Object(of) = value { Some(of.0.len()) } else { None });
+                let values: Vec<&Json> = leaves.iter().map(|leaf| leaf.get(name).unwrap_or(&NULL)).collect();
+                let lengths = values.iter().filter_map(|value| Some(value.as_object()?.len()));
                 let value = match lengths.max().filter(|_| self.by_channel.contains(&name)) {
                     Some(length) => {
-                        let members = values.iter().flat_map(|value| (0..length).map(|at| value.member_at(at)));
+                        let member_at = |value: &'j Json, at: usize| {
+                            value.as_object().and_then(|of| of.values().nth(at)).unwrap_or(&NULL)
+                        };
+                        let members = values.iter().flat_map(|value| (0..length).map(move |at| member_at(value, at)));
                         self.gathered(&[shape, &[length]].concat(), members.collect())
                     }
                     None => self.gathered(shape, values),
@@ -173,34 +108,27 @@ impl Layout {
             }
             return fields.record();
         }
-        if leaves.iter().all(|leaf| leaf.is_number()) {
-            return array(shape, leaves.iter().map(|leaf| leaf.number()).collect(), ElementKind::Float);
+        if leaves.iter().all(|leaf| is_number(leaf)) {
+            return array(shape, leaves.into_iter().map(number).collect(), ElementKind::Float);
         }
-        if let Some(flags) = leaves
-            .iter()
-            .map(|leaf| if let Tree::Truth(flag) = leaf { Some(*flag) } else { None })
-            .collect::<Option<Vec<_>>>()
-        {
-            return array(
-                shape,
-                flags.into_iter().map(|flag| f64::from(u8::from(flag))).collect(),
-                ElementKind::Logical,
-            );
+        if let Some(flags) = leaves.iter().map(|leaf| leaf.as_bool()).collect::<Option<Vec<_>>>() {
+            let numbers = flags.into_iter().map(|flag| f64::from(u8::from(flag))).collect();
+            return array(shape, numbers, ElementKind::Logical);
         }
-        let length = leaves.iter().find_map(|leaf| if let Tree::List(list) = leaf { Some(list.len()) } else { None });
-        let is_row = |leaf: &&Tree| match leaf {
-            Tree::List(list) => Some(list.len()) == length && list.iter().all(Tree::is_number),
-            leaf => matches!(leaf, Tree::Null(())),
+        let length = leaves.iter().find_map(|leaf| Some(leaf.as_array()?.len()));
+        let is_row = |leaf: &&Json| match leaf {
+            Json::Array(list) => Some(list.len()) == length && list.iter().all(is_number),
+            leaf => leaf.is_null(),
         };
         if let Some(length) = length.filter(|&length| length > 0 && leaves.iter().all(is_row)) {
             let numbers = leaves.iter().flat_map(|leaf| match leaf {
-                Tree::List(list) => list.iter().map(Tree::number).collect(),
+                Json::Array(list) => list.iter().map(number).collect(),
                 _ => vec![f64::NAN; length],
             });
             return array(&[shape, &[length]].concat(), numbers.collect(), ElementKind::Float);
         }
         let values = leaves.iter().map(|leaf| match leaf {
-            Tree::Null(()) => matrix(0, 0, Vec::new()),
+            Json::Null => matrix(0, 0, Vec::new()),
             leaf => self.value("", leaf),
         });
         let shape = sides(shape);
@@ -209,15 +137,11 @@ impl Layout {
 }
 
 /// The names of the members of all objects, each once, in the order in which they are met.
-fn names_of<'t>(objects: &[&'t Tree]) -> Vec<&'t str> {
+fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
-    for object in objects {
-        if let Tree::Object(ByName(members)) = object {
-            for (name, _) in members {
-                if !names.contains(&name.as_str()) {
-                    names.push(name);
-                }
-            }
+    for name in objects.iter().filter_map(|object| object.as_object()).flat_map(|members| members.keys()) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
         }
     }
     names
@@ -336,8 +260,8 @@ mod tests {
     const LAYOUT: Layout = Layout { by_channel: &["inputs"], by_name: &["ratios"], columns: &["table"] };
 
     fn field(json: &str, path: &[&str]) -> Value {
-        let tree: Tree = serde_json::from_str(json).unwrap();
-        path.iter().fold(LAYOUT.value("", &tree), |value, name| {
+        let json: Json = serde_json::from_str(json).unwrap();
+        path.iter().fold(LAYOUT.value("", &json), |value, name| {
             let Value::Struct(records) = value else { panic!("{name} of {value:?}") };
             records.field(name).unwrap()[0].clone()
         })

@@ -2,46 +2,39 @@
 //! results as variables of MATLAB. Each is an [`Exporter`]; the command line, the window and the documentation go by [`EXPORTERS`].
 
 mod all_results;
-mod c_header;
 mod corrected_models;
-mod curve;
 mod fault;
 mod lookup_table;
-mod matlab_function;
 mod matlab_struct;
-mod python_module;
-mod scheduled_correction;
+mod programs;
+mod scheduled;
 #[cfg(test)]
 mod tests;
 
 use std::fmt;
 use std::io::{self, Write};
+use std::iter::once;
 use std::ops::Deref;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use gdcm_core::correction::Pade;
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::schedule::Schedule;
 use gdcm_core::study::{Analysis, AssessedCorrection};
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
-use scheduled_correction::ScheduledCorrection;
+use scheduled::Scheduled;
 
 pub use fault::ExportFault;
 
 /// Every export, in the order of their list.
-pub static EXPORTERS: [&dyn Exporter; 9] = [
-    &all_results::Mat,
-    &matlab_function::MatlabFunction,
-    &python_module::PythonModule,
-    &c_header::CHeader,
-    &lookup_table::TableCsv,
-    &lookup_table::TableMat,
-    &corrected_models::CorrectedModels,
-    &all_results::Csv,
-    &all_results::Json,
-];
+pub static EXPORTERS: LazyLock<Vec<&dyn Exporter>> = LazyLock::new(|| {
+    let programs = programs::PROGRAMS.iter().map(|program| program as &dyn Exporter);
+    let tables: [&dyn Exporter; 2] = [&lookup_table::TableCsv, &lookup_table::TableMat];
+    let results: [&dyn Exporter; 3] = [&corrected_models::CorrectedModels, &all_results::Csv, &all_results::Json];
+    once(&all_results::Mat as &dyn Exporter).chain(programs).chain(tables).chain(results).collect()
+});
 
 /// Something that a study's corrections can be exported as.
 pub trait Exporter: Sync {
@@ -60,7 +53,7 @@ pub trait Exporter: Sync {
     ///
     /// # Errors
     /// Why there are none.
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault>;
+    fn export<'e>(&'e self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault>;
 }
 
 /// What an export is called and what it needs.
@@ -83,7 +76,7 @@ pub struct ExportFormat(&'static dyn Exporter);
 impl ExportFormat {
     /// Every format, in the order of their list.
     pub fn all() -> impl Iterator<Item = Self> {
-        EXPORTERS.into_iter().map(Self)
+        EXPORTERS.iter().copied().map(Self)
     }
 
     /// The format of this name.
@@ -169,15 +162,11 @@ pub struct Export<'e> {
     pub path: &'e Path,
 }
 
-impl Export<'_> {
+impl<'e> Export<'e> {
     /// The schedule of the study.
-    fn schedule(&self) -> Result<&Schedule, ExportFault> {
-        self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))
-    }
-
-    /// The correction that it makes at each airspeed.
-    fn scheduled(&self) -> Result<ScheduledCorrection, ExportFault> {
-        Ok(ScheduledCorrection::of(self.schedule()?, &self.analysis.study.dataset, self.source))
+    fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
+        let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
+        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source })
     }
 }
 

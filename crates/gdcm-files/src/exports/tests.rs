@@ -1,16 +1,18 @@
 //! Exported programs, run by their interpreters and compilers, against the schedule itself.
 
+use std::path::Path;
 use std::process::Command;
+use std::sync::Arc;
 
+use gdcm_core::dataset::Dataset;
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
 use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
-use super::ExportSource;
-use super::c_header::c_header;
-use super::lookup_table::table_csv;
-use super::matlab_function::matlab_function;
-use super::python_module::python_module;
-use super::scheduled_correction::ScheduledCorrection;
+use proptest::prelude::*;
+
+use super::programs::{PROGRAMS, comment};
+use super::scheduled::{Scheduled, number};
+use super::{ExportFault, ExportSource, Exporter};
 use crate::embedded_example;
 
 /// The example under every form of the schedule: kind, quantity, delays.
@@ -49,10 +51,17 @@ fn analyses() -> Vec<(String, Analysis)> {
     analyses
 }
 
-fn correction(analysis: &Analysis) -> ScheduledCorrection {
-    let source = ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() };
-    ScheduledCorrection::of(analysis.schedule.as_ref().unwrap(), &analysis.study.dataset, &source)
+/// The schedule of an analysis as a program in a language; `name` is that of its file.
+fn program(language: &str, analysis: &Analysis, name: &str) -> String {
+    let source = &ExportSource { name: NASTY[0].to_owned(), sha256: "ba78".to_owned() };
+    let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
+    let program = PROGRAMS.iter().find(|program| program.about().name == language).unwrap();
+    program.text(&Scheduled { schedule, dataset, source }, name).unwrap()
 }
+
+/// Names that would end a comment or a text if they were written as they are.
+const NASTY: [&str; 3] =
+    ["LAT \"x\" 'y' */ \\ %d\n%}\r*/ end", "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}", "\\u{7f}\u{0}\\"];
 
 /// Fifty airspeeds \[kt\], from below the range of the example to above it, with both its ends.
 fn airspeeds() -> Vec<f64> {
@@ -99,21 +108,12 @@ fn listed() -> String {
 }
 
 #[test]
-fn the_correction_is_the_schedule() {
+fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
     for (words, analysis) in analyses() {
-        let correction = correction(&analysis);
-        let of = |airspeed: f64| {
-            let at = correction.clamp(airspeed);
-            let channels: Vec<_> = correction.inputs.iter().chain(&correction.outputs).collect();
-            let gains = channels.iter().map(|channel| channel.gain.at(at));
-            gains.chain(channels.iter().map(|channel| channel.delay_s.at(at))).collect::<Vec<_>>()
-        };
-        let found: Vec<f64> = airspeeds().into_iter().flat_map(of).collect();
-        assert_same(&words, &found, &expected(&analysis));
-        let says_zero = correction.notes.iter().any(|note| note.contains("delays are not scheduled"));
         let settings = &analysis.study.settings;
         let has_delays = settings.schedule.delays || settings.phase == PhaseCorrection::Lead;
-        assert_eq!(says_zero, !has_delays, "{words}");
+        let text = program("py", &analysis, "");
+        assert_eq!(text.contains("# Note: delays are not scheduled in this study"), !has_delays, "{words}");
     }
 }
 
@@ -124,7 +124,7 @@ fn a_module_of_python_gives_the_programs_own_numbers() {
     }
     for (words, analysis) in analyses() {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("c.py"), python_module(&correction(&analysis)).unwrap()).unwrap();
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
         let program = format!(
             "import c\nfor a in [{}]:\n    mi, mo, ti, to = c.gdcm_correction(a)\n    \
              print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
@@ -141,7 +141,7 @@ fn a_header_of_c_gives_the_programs_own_numbers() {
     }
     for (words, analysis) in analyses() {
         let folder = tempfile::tempdir().unwrap();
-        let header = c_header(&correction(&analysis)).unwrap();
+        let header = program("h", &analysis, "");
         let main = format!(
             "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}};\n\
              double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, j;\n\
@@ -167,7 +167,7 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
     }
     for (words, analysis) in analyses() {
         let folder = tempfile::tempdir().unwrap();
-        let function = matlab_function(&correction(&analysis), "my_study").unwrap();
+        let function = program("m", &analysis, "my_study");
         std::fs::write(folder.path().join("my_study.m"), function).unwrap();
         let program = format!(
             "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
@@ -178,18 +178,19 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
 }
 
 /// The example with altitude as its second variable, and what it says at fifty airspeeds and three altitudes.
-fn with_altitude(kind: ScheduleKind) -> (ScheduledCorrection, Vec<f64>) {
+fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
     let mut study = Study::new(embedded_example().unwrap().dataset);
     let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
     study.settings.schedule = schedule;
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-    let schedule = analysis.schedule.as_ref().unwrap();
+    let schedule = analysis.schedule.clone().unwrap();
     let values = |airspeed: f64, altitude: f64| {
         let at = schedule.evaluate(airspeed, Some(altitude));
         [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
     };
     let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));
-    (correction(&analysis), pairs().flat_map(|(airspeed, altitude)| values(airspeed, altitude)).collect())
+    let expected = pairs().flat_map(|(airspeed, altitude)| values(airspeed, altitude)).collect();
+    (analysis, expected)
 }
 
 /// Below the range of the example, in it, and above \[ft\].
@@ -198,11 +199,11 @@ const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
 #[test]
 fn a_second_variable_is_the_second_argument_of_every_program() {
     for kind in [ScheduleKind::Polynomial { degree: 2 }, ScheduleKind::Table] {
-        let (correction, expected) = with_altitude(kind);
+        let (analysis, expected) = with_altitude(kind);
         let words = format!("{kind:?} and altitude");
         if is_there("python3") {
             let folder = tempfile::tempdir().unwrap();
-            std::fs::write(folder.path().join("c.py"), python_module(&correction).unwrap()).unwrap();
+            std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
             let program = format!(
                 "import c\nfor a in [{}]:\n  for h in {ALTITUDES:?}:\n    mi, mo, ti, to = c.gdcm_correction(a, h)\n    \
                  print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
@@ -212,7 +213,7 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
         }
         if is_there("cc") {
             let folder = tempfile::tempdir().unwrap();
-            let header = c_header(&correction).unwrap();
+            let header = program("h", &analysis, "");
             let main = format!(
                 "{header}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}, h[] = {{0, 4321, 20000}};\n\
                  double v[2 * (GDCM_INPUT_COUNT + GDCM_OUTPUT_COUNT)]; unsigned k, l, j;\n\
@@ -229,10 +230,90 @@ fn a_second_variable_is_the_second_argument_of_every_program() {
             let program = folder.path().join("main").display().to_string();
             assert_run(&words, &program, &[], folder.path(), &expected);
         }
-        let function = matlab_function(&correction, "my_study").unwrap();
+        let function = program("m", &analysis, "my_study");
         assert!(function.contains("my_study(airspeed_kt, altitude_ft)"), "{function}");
-        let text = table_csv(&correction, &[45.0, 90.0, 140.0]).unwrap();
-        let rows = text.lines().filter(|line| !line.starts_with('#')).count();
-        assert_eq!(rows, 1 + 3 * 3, "a heading, and each airspeed at three altitudes");
+    }
+}
+
+/// The example, with channels whose names are hard to write: one input and two outputs.
+fn with_nasty_names() -> Analysis {
+    let example = embedded_example().unwrap().dataset;
+    let mut header = example.header();
+    header.inputs[0].name = NASTY[0].to_owned();
+    header.outputs[0].name = NASTY[1].to_owned();
+    header.outputs[1].name = NASTY[2].to_owned();
+    let conditions = example.conditions().iter().map(|condition| condition.as_ref().clone()).collect();
+    let study = Study::new(Arc::new(Dataset::new(header, conditions).unwrap()));
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+#[test]
+fn names_come_back_byte_by_byte() {
+    let analysis = with_nasty_names();
+    let folder = tempfile::tempdir().unwrap();
+    let expected: Vec<f64> = NASTY.concat().bytes().map(f64::from).collect();
+    if is_there("python3") {
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+        let lists = "import c\nfor name in c.INPUTS[:1] + c.OUTPUTS[:2]:\n    print(*list(name.encode()))";
+        assert_run("names", "python3", &["-c", lists], folder.path(), &expected);
+    }
+    if is_there("cc") {
+        let main = format!(
+            "{}\n#include <stdio.h>\nint main(void) {{\n\
+             const char *n[] = {{GDCM_INPUT_NAME_0, GDCM_OUTPUT_NAME_0, GDCM_OUTPUT_NAME_1}};\n\
+             const unsigned sizes[] = {{sizeof GDCM_INPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_0, sizeof GDCM_OUTPUT_NAME_1}};\n\
+             unsigned k, j; for (k = 0; k < 3; k++) for (j = 0; j + 1 < sizes[k]; j++) printf(\"%d \", (unsigned char)n[k][j]);\n\
+             return 0; }}\n",
+            program("h", &analysis, "")
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+        let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let program = folder.path().join("main").display().to_string();
+        assert_run("names", &program, &[], folder.path(), &expected);
+    }
+}
+
+#[test]
+fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
+    let text = program("m", &with_nasty_names(), "k2_v");
+    assert!(text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("), "{text}");
+    let code = ["function ", "  ", "end", "%"];
+    for line in text.lines().filter(|line| !line.is_empty()) {
+        assert!(code.iter().any(|start| line.starts_with(start)), "{line}");
+        assert!(!matches!(line.trim(), "%{" | "%}"));
+    }
+    assert_eq!(text.lines().filter(|line| line.starts_with("% Input")).count(), 4);
+}
+
+#[test]
+fn a_name_that_matlab_cannot_call_is_refused() {
+    let matlab = PROGRAMS.iter().find(|program| program.about().name == "m").unwrap();
+    for name in ["2nd", "my-study", "gdcm_table", "end", "parfor", "endfunction", "\u{e9}t\u{e9}", &"x".repeat(64)] {
+        let refused = matlab.check_path(Path::new(&format!("folder/{name}.m")));
+        assert_eq!(refused, Err(ExportFault::FunctionName { found: name.to_owned() }));
+    }
+    assert_eq!(matlab.check_path(Path::new("k2_v.m")), Ok(()));
+}
+
+#[test]
+fn a_comment_stays_one_line_and_is_not_ended() {
+    assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
+    assert_eq!(comment("δ\\"), "<U+03B4>\\.");
+}
+
+proptest! {
+    #[test]
+    fn no_comment_is_ended(text in "[*/\\\\?%{}\"'a\\n]{0,20}") {
+        let plain = comment(&text);
+        for mark in ["*/", "/*", "//", "??", "%{", "%}", "\n", "\"\"", "'''"] {
+            prop_assert!(!plain.contains(mark), "{}", plain);
+        }
+    }
+
+    #[test]
+    fn a_number_comes_back_to_the_last_digit(value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL) {
+        prop_assert_eq!(number(value).parse::<f64>().unwrap(), value);
     }
 }

@@ -133,10 +133,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let (inputs, outputs) = dataset.names_of_channels();
     let airspeeds_kt = schedule.airspeeds.clusters_kt();
     let channels = all_channels(dataset).into_iter().map(|channel| {
-        let gain = move |correction: &ChannelCorrection| match channel {
-            Channel::Input(input) => decimals(correction.input_gains[input], 4),
-            Channel::Output(output) => decimals(correction.output_gains[output], 4),
-        };
+        let gain = move |correction: &ChannelCorrection| decimals(correction.gain(channel), 4);
         (format!("k_{}", channel.name(&inputs, &outputs)), Box::new(gain) as Cell)
     });
     add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled gains of the channels", channels.collect());

@@ -74,14 +74,9 @@ fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "not used as representative"] {
         assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
     }
-    let written = &Corrections::of(&pinned, "", &BTreeSet::from([ONLY])).conditions[0];
-    assert_eq!(written.set_aside.len(), 1);
-    assert_eq!((written.set_aside[0].model.as_str(), &written.set_aside[0].why), ("i4", &caution));
-    assert!(
-        Corrections::of(&only(&with_short_measurement(None), &[]), "", &BTreeSet::from([ONLY])).conditions[0]
-            .set_aside
-            .is_empty()
-    );
+    let set_aside = |analysis| corrections(analysis, "", &BTreeSet::from([ONLY]))["conditions"][0]["set_aside"].clone();
+    assert_eq!(set_aside(&pinned), serde_json::json!([{"model": "i4", "why": caution}]));
+    assert_eq!(set_aside(&only(&with_short_measurement(None), &[])), serde_json::json!([]));
 }
 
 #[test]
@@ -124,7 +119,8 @@ fn residues_of_differencing_count_as_zero_and_are_named() {
         assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
         let named = words(&analysis, found).concat();
         assert!(named.contains("I1 → O0, I0 → O1 are numerically nothing"), "{named}");
-        assert_eq!(Corrections::of(&analysis, "", &BTreeSet::from([ONLY])).conditions[0].cautions.concat(), named);
+        let written = corrections(&analysis, "", &BTreeSet::from([ONLY]));
+        assert_eq!(texts(&written["conditions"][0]["cautions"]).concat(), named);
     }
 }
 
@@ -186,13 +182,11 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
             assert!((0.99 * least..=1.01 * most).contains(&gain), "channel {channel}: {gain}");
         }
     }
-    let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect()).schedule.unwrap();
-    assert_eq!((written.degree, written.table.len(), written.airspeed_tolerance_kt), (Some(1), 2, 2.0));
-    assert!(
-        written.cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"),
-        "{:?}",
-        written.cautions
-    );
+    let written = &corrections(&analysis, "", &analysis.conditions.keys().copied().collect())["schedule"];
+    assert_eq!((&written["degree"], list(&written["table"]).len()), (&1.into(), 2));
+    assert_eq!(written["airspeed_tolerance_kt"], 2.0);
+    let cautions = texts(&written["cautions"]);
+    assert!(cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"), "{cautions:?}");
 }
 
 #[test]

@@ -50,8 +50,10 @@ fn turn(study: &mut Study, channel: Channel, of: Option<SignRole>) {
     study.apply(&Edit::SetSign { channel, of }).unwrap();
 }
 
-fn results(analysis: &Analysis) -> Corrections {
-    Corrections { signs: Vec::new(), ..Corrections::of(analysis, "", &BTreeSet::new()) }
+fn results(analysis: &Analysis) -> Value {
+    let mut written = corrections(analysis, "", &BTreeSet::new());
+    written.as_object_mut().unwrap().remove("signs");
+    written
 }
 
 #[test]

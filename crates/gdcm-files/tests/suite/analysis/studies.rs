@@ -80,18 +80,21 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
         study.apply(&Edit::SetScheduled { condition, scheduled: false }).unwrap();
     }
     let analysis = analyze(&mut engine, &study);
-    let written = Corrections::of(&analysis, "", &BTreeSet::from([ConditionId(1)]));
-    assert!(written.schedule.is_none());
-    assert_eq!(written.assessment.left_out[0].why, "no schedule: no condition that could be solved is chosen for it");
+    let written = corrections(&analysis, "", &BTreeSet::from([ConditionId(1)]));
+    assert!(written["schedule"].is_null());
+    assert_eq!(
+        written["assessment"]["left_out"][0]["why"],
+        "no schedule: no condition that could be solved is chosen for it"
+    );
 }
 
 #[test]
 fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     let analysis = analyze(&mut Engine::default(), &short_study());
-    let written = Corrections::of(&analysis, "hash", &BTreeSet::from([10, 3, 400].map(ConditionId)));
-    let ids: Vec<i64> = written.conditions.iter().map(|condition| condition.id).collect();
-    assert_eq!(ids, [3, 10], "in the order of the dataset, and an id that is not there passed over");
-    assert_eq!(written.schedule.unwrap().airspeed_range_kt, [45.0, 140.0]);
+    let written = corrections(&analysis, "hash", &BTreeSet::from([10, 3, 400].map(ConditionId)));
+    let ids: Vec<f64> = list(&written["conditions"]).iter().map(|condition| number(&condition["id"])).collect();
+    assert_eq!(ids, [3.0, 10.0], "in the order of the dataset, and an id that is not there passed over");
+    assert_eq!(written["schedule"]["airspeed_range_kt"], serde_json::json!([45.0, 140.0]));
 }
 
 /// Keeps the first result, and ends the analysis after so many steps.

@@ -517,8 +517,7 @@ fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
     set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
-    let written = Corrections::of(&analysis, "", &analysis.conditions.keys().copied().collect());
-    let written = serde_json::to_value(&written).unwrap();
+    let written = corrections(&analysis, "", &analysis.conditions.keys().copied().collect());
     for condition in list(&written["conditions"]) {
         for key in ["D_s", "D_band_s"] {
             let entries = |table: &Value| -> Vec<Value> { list(table).iter().flat_map(list).cloned().collect() };

@@ -1,0 +1,122 @@
+//! Whole numbers of JSON, which many programs write as `7.0`.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::{Deserializer, Error, Unexpected, Visitor};
+
+/// The numbers that a type of Rust's whole numbers takes.
+pub trait WholeNumber: TryFrom<i64> {
+    /// What a file has to hold there.
+    const EXPECTED: &'static str;
+}
+
+impl WholeNumber for i64 {
+    const EXPECTED: &'static str = "a whole number";
+}
+
+impl WholeNumber for u64 {
+    const EXPECTED: &'static str = "a whole number not below 0";
+}
+
+impl WholeNumber for usize {
+    const EXPECTED: &'static str = "a whole number not below 0";
+}
+
+/// A whole number, also where it is written with a fraction of zero: for `#[serde(deserialize_with = "…")]`.
+pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    deserializer.deserialize_any(Whole(PhantomData))
+}
+
+/// The same, or null; for a key that may be absent, with `#[serde(default)]`.
+pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    deserializer.deserialize_option(WholeOrNone(PhantomData))
+}
+
+struct Whole<T>(PhantomData<T>);
+
+impl<T: WholeNumber> Visitor<'_> for Whole<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(T::EXPECTED)
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<T, E> {
+        T::try_from(number).map_err(|_| E::invalid_value(Unexpected::Signed(number), &self))
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
+        let value = i64::try_from(number).ok().and_then(|number| T::try_from(number).ok());
+        value.ok_or_else(|| E::invalid_value(Unexpected::Unsigned(number), &self))
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
+        /// Up to here every whole number is a floating-point number of its own.
+        const LARGEST: f64 = 9_007_199_254_740_992.0;
+        if number.fract() == 0.0 && number.abs() <= LARGEST {
+            self.visit_i64(number as i64)
+        } else {
+            Err(E::invalid_type(Unexpected::Float(number), &self))
+        }
+    }
+}
+
+struct WholeOrNone<T>(PhantomData<T>);
+
+impl<'de, T: WholeNumber> Visitor<'de> for WholeOrNone<T> {
+    type Value = Option<T>;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(T::EXPECTED)
+    }
+
+    fn visit_none<E: Error>(self) -> Result<Option<T>, E> {
+        Ok(None)
+    }
+
+    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<T>, D::Error> {
+        whole(deserializer).map(Some)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Debug, Deserialize)]
+    struct Numbers {
+        #[serde(deserialize_with = "whole")]
+        id: i64,
+        #[serde(default, deserialize_with = "whole_or_none")]
+        order: Option<usize>,
+    }
+
+    fn read(text: &str) -> Result<(i64, Option<usize>), String> {
+        let numbers = serde_json::from_str::<Numbers>(text).map_err(|error| error.to_string())?;
+        Ok((numbers.id, numbers.order))
+    }
+
+    #[test]
+    fn seven_point_zero_is_seven() {
+        assert_eq!(read(r#"{"id": 7.0, "order": 4.00}"#), Ok((7, Some(4))));
+        assert_eq!(read(r#"{"id": -7e0, "order": null}"#), Ok((-7, None)));
+        assert_eq!(read(r#"{"id": 9223372036854775807}"#), Ok((i64::MAX, None)));
+    }
+
+    #[test]
+    fn what_is_no_whole_number_is_refused() {
+        for (text, words) in [
+            (r#"{"id": 7.5}"#, "floating point `7.5`, expected a whole number"),
+            (r#"{"id": "7"}"#, "string \"7\", expected a whole number"),
+            (r#"{"id": 1e300}"#, "expected a whole number"),
+            (r#"{"id": 1, "order": -2.0}"#, "integer `-2`, expected a whole number not below 0"),
+            (r#"{"id": 1, "order": true}"#, "boolean `true`, expected a whole number not below 0"),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(error.contains(words), "{error}");
+        }
+    }
+}

@@ -275,7 +275,8 @@ impl PartialEq for NamePattern {
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> Vec<NamePattern> {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
-    let offset = |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])d?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
+    let offset =
+        |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])d?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
     let texts = [
         r"(?:^|[/_ -])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),

@@ -323,6 +323,10 @@ pub(super) fn page_of(name: &str, array: &Array, page: usize, pages_first: bool)
     }
     let (start, step) = if array.shape.len() == 3 && pages_first { (page, pages) } else { (page * rows * columns, 1) };
     let values: Vec<f64> = array.re.iter().skip(start).step_by(step.max(1)).take(rows * columns).copied().collect();
+    // There are sides enough and no numbers where one behind them is 0.
+    if values.len() != rows * columns {
+        return Err(format!("{name}: expected a matrix, found an array without numbers"));
+    }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
         return Err(format!(

@@ -2,6 +2,7 @@
 
 use gdcm_core::assembly::FoundModel;
 use gdcm_core::dataset::ResponseDraft;
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{FoundModels, models_of_bytes};
 use nalgebra::DMatrix;
 
@@ -10,7 +11,7 @@ use crate::program_folder;
 fn found(name: &str) -> FoundModels {
     let bytes = std::fs::read(program_folder().join("tests/data/foreign").join(name)).expect("the file is there");
     let name = name.rsplit('/').next().unwrap_or(name);
-    models_of_bytes(&bytes, name, 1 << 26).unwrap_or_else(|error| panic!("{name}: {error}"))
+    models_of_bytes(&bytes, name, &ReadingBudget::new(1 << 26)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// The only model of a file.

@@ -69,7 +69,8 @@ impl<'p> ReadingBudget<'p> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        let work = self.work.get().saturating_add(steps);
+        // Whoever asks has done something since it asked last.
+        let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             let most_millions = self.most_work / 1_000_000;
             return Err(VariableFault::TooMuchWork { variable: variable.to_owned(), most_millions });

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, folded_name};
+use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, direction_of, folded_name};
 use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
@@ -189,6 +189,7 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
         if let Some((name, unit)) = text.strip_suffix(close).and_then(|text| text.split_once(open))
             && !name.trim().is_empty()
             && !unit.trim().is_empty()
+            && direction_of(unit).is_none()
         {
             return ChannelLabel { name: Some(name.trim().to_owned()), unit: Some(unit.trim().to_owned()) };
         }

@@ -3,7 +3,7 @@
 use egui::ViewportCommand;
 use gdcm_core::message_text::sanitized;
 
-use crate::view::plot::Pane;
+use crate::view::plot::{FigureView, Pane};
 use crate::view::views::PairSet;
 use crate::view::{
     Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, focus_field, leave_region, table_of,
@@ -103,7 +103,7 @@ impl GdcmApp {
             Command::SetLooks(looks) => display.looks = looks,
             Command::FitPlots => {
                 display.fit_frequency_plots();
-                display.poles.request_fit();
+                display.figures.values_mut().for_each(FigureView::request_fit);
             }
             Command::SetTheme(theme) => self.ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),

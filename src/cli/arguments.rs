@@ -72,6 +72,15 @@ pub struct AssembleArguments {
     /// What is said about the files; without it, it is proposed and written beside the dataset.
     #[arg(long, value_name = "RULES.json")]
     pub rules: Option<PathBuf>,
+    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub headings: Vec<String>,
+    /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model; may be repeated.
+    #[arg(long, value_name = "CHANNEL=SIGN[:OF]", allow_hyphen_values = true)]
+    pub sign: Vec<FileSign>,
+    /// Sample time of models that do not say it, in seconds; 0 where they are of continuous time.
+    #[arg(long, value_name = "SECONDS", value_parser = real_number)]
+    pub sample_time: Option<f64>,
     /// The dataset, packed where the name ends in .gz.
     #[arg(long, value_name = "DATASET.json.gz")]
     pub out: PathBuf,
@@ -86,6 +95,9 @@ pub struct ConvertArguments {
     /// Files, or folders with all that is in them.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
+    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    pub headings: Vec<String>,
     /// The file of models.
     #[arg(long, value_name = "MODELS.json")]
     pub out: PathBuf,
@@ -375,6 +387,35 @@ impl FromStr for Rejection {
         let (id, model) = text.split_once(':').ok_or_else(expected)?;
         let condition = id.trim().parse().map_err(|_| expected())?;
         Ok(Self { condition, model: model.to_owned() })
+    }
+}
+
+/// The sign of a channel in files that are assembled: of a role, of all, or of one model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileSign {
+    /// The channel.
+    pub channel: String,
+    /// 1 or -1.
+    pub sign: f64,
+    /// "identified", "physics", "all", or the file of a model.
+    pub of: String,
+}
+
+impl FromStr for FileSign {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected =
+            || format!("expected CHANNEL=-1 or CHANNEL=1, then :identified, :physics, :all or :FILE, found \"{text}\"");
+        let (channel, rest) = text.rsplit_once('=').ok_or_else(expected)?;
+        let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
+        let sign = match sign.trim() {
+            "-1" => -1.0,
+            "1" | "+1" => 1.0,
+            _ => return Err(expected()),
+        };
+        let (channel, of) = (channel.trim().to_owned(), of.trim().to_owned());
+        if channel.is_empty() || of.is_empty() { Err(expected()) } else { Ok(Self { channel, sign, of }) }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `gdcm figure`.
 
-use gdcm_core::message_text::sanitized_path;
+use gdcm_core::message_text::{sanitized, sanitized_path};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
@@ -30,7 +30,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     };
     let figure = figure.ok_or_else(|| Failure::NoResult { reason: "there is nothing to draw".to_owned() })?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
-    say(&format!("{}: {}\n", sanitized_path(&arguments.out), figure.title))
+    say(&format!("{}: {}\n", sanitized_path(&arguments.out), sanitized(&figure.title)))
 }
 
 /// The figure of one condition, of the curves that the window draws.

@@ -10,10 +10,11 @@ use gdcm_core::assembly::{Assembly, Headings, proposed_rules};
 use gdcm_core::study::Table;
 use gdcm_core::units::number;
 use gdcm_files::{
-    FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
+    EVERY_TABLE, FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
     relative_folder, rules_path, sources_folder,
 };
 
+use super::arguments::FileSign;
 use super::existing;
 use super::{AssembleArguments, ConvertArguments, Failure, indented, say, say_error};
 
@@ -52,7 +53,7 @@ impl Drop for ReadingProgress {
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.files.clone());
     outputs.check(&[&arguments.out])?;
-    let found = found_models(&arguments.files, &Headings::new())?;
+    let found = found_models(&arguments.files, &said_headings(&arguments.headings))?;
     if found.models.is_empty() {
         return Err(Failure::Option { option: "FILE", reason: "holds no model that could be taken".to_owned() });
     }
@@ -83,9 +84,20 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
         }
         None => None,
     };
-    let none = Headings::new();
-    let found = found_models(&arguments.folders, said.as_ref().map_or(&none, |rules| &rules.headings))?;
-    let rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
+    let mut headings = said.as_ref().map(|rules| rules.headings.clone()).unwrap_or_default();
+    headings.extend(said_headings(&arguments.headings));
+    let found = found_models(&arguments.folders, &headings)?;
+    let mut rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
+    rules.headings = headings;
+    rules.sample_time_s = arguments.sample_time.or(rules.sample_time_s);
+    for FileSign { channel, sign, of } in arguments.sign.iter().cloned() {
+        let signs = match of.as_str() {
+            "all" => &mut rules.signs,
+            "identified" | "physics" => rules.role_signs.entry(of).or_default(),
+            _ => rules.rows.entry(of).or_default().signs.get_or_insert_default(),
+        };
+        signs.insert(channel, sign);
+    }
     let assembly = Assembly::new(found.models, rules);
     say(&table(&assembly))?;
     if is_proposed {
@@ -122,6 +134,12 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
     found.faults.iter().for_each(|fault| say_error(&format!("not taken: {}", sanitized(fault))));
     found.ignored.iter().for_each(|words| say_error(&format!("no model: {}", sanitized(words))));
     Ok(found)
+}
+
+/// What is said of every table of as many columns.
+fn said_headings(headings: &[String]) -> Headings {
+    let said = Some(headings.iter().map(|heading| heading.trim().to_owned()).collect::<Vec<_>>());
+    said.filter(|said| !said.is_empty()).map(|said| (EVERY_TABLE.to_owned(), said)).into_iter().collect()
 }
 
 fn name_of(folders: &[PathBuf]) -> String {

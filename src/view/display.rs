@@ -13,7 +13,7 @@ use super::plot::{
     Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView, PhaseErrorUnit,
     PhaseUnit, Role,
 };
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet};
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, View};
 use super::{Arrangement, CurveDisplay, PlotStyle, Sorting};
 
 /// What is shown, none of which changes a result.
@@ -47,14 +47,10 @@ pub struct Display {
     pub once_held: BTreeSet<Pair>,
     /// Responses that the engineer picked for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
-    /// Transforms of the net-gain plots.
-    pub net_gain: FigureView,
     /// What the channel plots measure, and over what.
     pub channel_values: (Measure, Across),
     /// Transforms of the channel plots.
     pub channels: ChannelsView,
-    /// Ranges and transforms of the plots of poles.
-    pub poles: FigureView,
     /// Whether zeros of the response in focus are shown among the poles.
     pub show_zeros: bool,
     /// Modes and zeros, kept from frame to frame.
@@ -87,8 +83,8 @@ pub struct Display {
     pub compare_sorting: [Sorting; 2],
     /// Cells of the overview.
     pub overview: OverviewView,
-    /// Transforms of the assessment.
-    pub assessment: FigureView,
+    /// What the figures of the views remember between frames.
+    pub figures: BTreeMap<View, FigureView>,
     /// Shapes of the responses drawn, kept from frame to frame.
     pub shapes: BTreeMap<Pair, ResponseCache>,
     /// The curves that the Bode plot shows.

@@ -6,7 +6,7 @@ use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, Widget
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
-use gdcm_core::study::{ConditionAnalysis, Derivation, ExplainTarget, Remark, derivation, remarks};
+use gdcm_core::study::{ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, SignRole, derivation, remarks};
 
 use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, State, entries_ui};
 
@@ -80,17 +80,26 @@ pub fn question_menu_ui(ui: &mut Ui, values: Vec<(String, ExplainTarget)>, comma
     });
 }
 
+/// What turns the models of a channel, or puts them back, with its label.
+pub fn turn_entry(state: &State, channel: Channel, of: Option<SignRole>) -> (String, Command) {
+    let (inputs, outputs) = state.dataset().names_of_channels();
+    let name = channel.name(&inputs, &outputs);
+    let label = if of.is_some() { format!("Turn {name}") } else { format!("Turn {name} back") };
+    (label, Edit::SetSign { channel, of }.into())
+}
+
 /// The remarks on the result shown, and on the schedule.
 pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
     remarks(&state.study, shown, schedule)
 }
 
-/// The responses and the channels that are in each other's way, of the gains.
+/// The responses and the channels that are in each other's way, of the gains; channels of another sign or unit too.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let conflicts = &shown.gains.conflicts;
     let pairs = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
-    (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).collect())
+    let doubted = shown.doubts.iter().map(|doubt| doubt.channel);
+    (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).chain(doubted).collect())
 }
 
 /// What holding or freeing a response would cost, in words; nothing until the table of all toggles of this very result is computed.

@@ -6,16 +6,16 @@ use egui::{
 };
 
 use gdcm_core::correction::Channel;
-use gdcm_core::dataset::{Dataset, Pair};
+use gdcm_core::dataset::Pair;
 use gdcm_core::fidelity::{ACCEPTABLE, INDISTINGUISHABLE};
-use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, Undefined};
+use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, SignRole, Undefined};
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::s_to_ms;
 
 use super::views::bar_words;
 use super::{
     Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui, gain_conflict_marks,
-    named_switch, question_menu_ui, region_ui, table_heading_ui, toggle_costs,
+    named_switch, question_menu_ui, region_ui, table_heading_ui, toggle_costs, turn_entry,
 };
 
 const CELL_HEIGHT: f32 = 50.0;
@@ -45,8 +45,7 @@ fn cells_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
     let size = vec2(ROW_LABEL_WIDTH + width * inputs.len() as f32, HEADER_HEIGHT + CELL_HEIGHT * outputs.len() as f32);
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
     let name_color = |channel| {
-        let is_doubted = state.shown().is_some_and(|shown| shown.doubts.iter().any(|doubt| doubt.channel == channel));
-        if is_doubted || blamed.contains(&channel) { palette.warning } else { palette.dim_text }
+        if blamed.contains(&channel) { palette.warning } else { palette.dim_text }
     };
     ScrollArea::horizontal().id_salt("constraint matrix").show(ui, |ui| {
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -88,7 +87,7 @@ struct Cell<'a> {
     /// Whether it is not matched, or keeps others from being matched.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
-    dataset: &'a Dataset,
+    state: &'a State,
     sureness: Sureness<'a>,
     /// What holding or freeing it would cost, in words; empty until that is known.
     toggle_costs: Vec<String>,
@@ -105,7 +104,7 @@ impl<'a> Cell<'a> {
             fitted: !state.study.settings.ignored[pair],
             in_conflict,
             shown: state.shown(),
-            dataset: state.dataset(),
+            state,
             sureness: state.sureness(),
             toggle_costs: toggle_costs(state, pair),
         }
@@ -250,6 +249,11 @@ impl<'a> Cell<'a> {
         switch(ui, self.constrained, format!("Hold {} exactly", self.name), Edit::Hold);
         switch(ui, self.fitted, format!("Fit {} in the objective", self.name), Edit::Fit);
         entries_ui(ui, [("Hold exactly the on-axis responses", Edit::ConstrainOnAxis.into())], commands);
+        let turn = |channel| {
+            let is_turned = self.state.study.signs.contains_key(&channel);
+            turn_entry(self.state, channel, (!is_turned).then_some(SignRole::Identified))
+        };
+        entries_ui(ui, Channel::of(self.pair).map(turn), commands);
         if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
             let (id, pair) = (shown.condition.id(), self.pair);
             let values = [
@@ -274,7 +278,7 @@ impl<'a> Cell<'a> {
         ui.label(words.join(" · "));
         let Some(shown) = self.shown else { return };
         for doubt in shown.doubts.iter().filter(|doubt| doubt.channel.is_of(self.pair)) {
-            ui.label(doubt.words(self.dataset));
+            ui.label(doubt.words(self.state.dataset()));
         }
         let (Some(gain), Some(delay)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
             let why = self.undefined().map(|why| format!("No G, no D and no J: {}", why));

@@ -44,7 +44,9 @@ pub use controls::{
 use curve_display::curve_entries;
 pub use curve_display::{CurveCommand, CurveDisplay};
 pub use display::{Display, Preferences};
-pub use explanation::{QUESTION, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, value_label_ui};
+pub use explanation::{
+    QUESTION, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, turn_entry, value_label_ui,
+};
 use figures::figure_button_ui;
 pub use figures::{figure_name, figure_of, views_with_figure};
 pub use focus::{Region, leave_region, region_place, region_ui};

@@ -14,7 +14,7 @@ use gdcm_core::units::s_to_ms;
 use super::views::bar_words;
 use super::{
     BODY_SIZE, Command, FormKind, Palette, QUESTION, Region, SMALL_SIZE, State, TableKind, heading_ui, named,
-    region_ui, remarks_shown, table_menu_ui, value_label_ui,
+    region_ui, remarks_shown, table_menu_ui, turn_entry, value_label_ui,
 };
 
 /// Size of the half-widths of bars \[pt\].
@@ -47,7 +47,7 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                     ignore_ui(ui, state, pair, commands);
                 }
                 if let Some((channel, of)) = remark.turn {
-                    turn_ui(ui, state, Edit::SetSign { channel, of }, commands);
+                    turn_ui(ui, turn_entry(state, channel, of), commands);
                 }
                 if let Some(phase) = remark.phase {
                     offer_ui(ui, phase, commands);
@@ -247,18 +247,15 @@ fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
     }
 }
 
-/// The click that takes a response out of the objective.
-/// Turns the models of a channel, or puts them back.
-fn turn_ui(ui: &mut Ui, state: &State, edit: Edit, commands: &mut Vec<Command>) {
-    let Edit::SetSign { channel, of } = edit else { return };
-    let (inputs, outputs) = state.dataset().names_of_channels();
-    let label = format!("Turn {}{}", channel.name(&inputs, &outputs), if of.is_some() { "" } else { " back" });
+/// The click that turns the models of a channel, or puts them back.
+fn turn_ui(ui: &mut Ui, (label, turn): (String, Command), commands: &mut Vec<Command>) {
     let button = named(ui.small_button(&label), Role::Button, label);
     if button.on_hover_text("In every condition; can be undone").clicked() {
-        commands.push(edit.into());
+        commands.push(turn);
     }
 }
 
+/// The click that takes a response out of the objective.
 fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>) {
     let name = state.dataset().pair_name(pair);
     let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));

@@ -18,7 +18,9 @@ pub(crate) fn archive() -> Vec<u8> {
 
 #[test]
 fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() {
-    let found = records_of_bytes(&archive(), "example-records.zip", 1 << 30).unwrap();
+    let found =
+        records_of_bytes(&archive(), "example-records.zip", &gdcm_files::variables::ReadingBudget::new(1 << 30))
+            .unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));
     let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset);
     let patterns = standard_patterns();

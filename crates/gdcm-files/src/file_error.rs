@@ -195,6 +195,19 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
+    /// The numbers of a figure are asked for that shows none.
+    #[error(
+        "{}: \"{}\" shows no numbers that could be written: none of the responses or channels asked for has a result; ask for others, or \
+         for .svg",
+        sanitized_path(path),
+        sanitized(title)
+    )]
+    FigureWithoutNumbers {
+        /// The file.
+        path: PathBuf,
+        /// The title of the figure.
+        title: String,
+    },
     /// What was asked for cannot be exported.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Export {

@@ -265,7 +265,8 @@ mod tests {
 
     #[test]
     fn the_models_are_found_again_in_the_file() {
-        let again = models_of_bytes(&written(&[]), "identified.json", 1 << 24).unwrap();
+        let again =
+            models_of_bytes(&written(&[]), "identified.json", &crate::variables::ReadingBudget::new(1 << 24)).unwrap();
         let gains: Vec<f64> =
             again.models.iter().map(|model| model.draft.matrices[1].as_ref().unwrap()[(0, 0)]).collect();
         assert_eq!((gains, again.faults), (vec![2.0, 3.0], Vec::<String>::new()));

@@ -32,10 +32,10 @@ use crate::zip_files::Zip;
 /// Memory that what one file holds may take \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 /// Largest file \[bytes\].
-const LARGEST_FILE: u64 = 512 << 20;
+pub(crate) const LARGEST_FILE: u64 = 512 << 20;
 /// Most files that are looked at, and deepest folders inside one another.
-const MOST_FILES: usize = 20_000;
-const DEEPEST: usize = 16;
+pub(crate) const MOST_FILES: usize = 20_000;
+pub(crate) const DEEPEST: usize = 16;
 
 /// A format of files of numbers.
 pub(crate) trait Importer: Sync {

@@ -54,7 +54,7 @@ pub use gdcm_core::dataset::limits::LARGEST_TEXT;
 pub use identified_file::{IdentifiedModels, add_identified};
 pub use importer::{FolderProgress, sources_folder};
 pub use mat::write as write_mat;
-pub use model_files::{FoundModels, models_of_bytes, read_models};
+pub use model_files::{EVERY_TABLE, FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;
 pub use npy::write_npz;
 pub use opened::{Opened, load_any};

@@ -50,12 +50,11 @@ pub fn read_models(
     Ok(FoundModels { files, ..found })
 }
 
-/// The models in the bytes of a file of this name, in no more than `most` bytes of memory for what it holds.
-pub fn models_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundModels, FileError> {
-    let budget = ReadingBudget::new(most);
+/// The models in the bytes of a file of this name, within a budget.
+pub fn models_of_bytes(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<FoundModels, FileError> {
     let none = Headings::new();
     let mut reading = ModelReading { headings: &none, found: FoundModels::default(), matrices: Vec::new() };
-    reading.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
+    reading.take(import_bytes(bytes, Path::new(name), name, budget)?, budget)?;
     Ok(FoundModels { files: 1, ..reading.finish() })
 }
 

@@ -136,7 +136,9 @@ mod tests {
 
     #[test]
     fn converted_models_keep_all_that_a_dataset_says_of_them() {
-        let read = |bytes: &[u8], name: &str| -> FoundModels { models_of_bytes(bytes, name, 1 << 24).unwrap() };
+        let read = |bytes: &[u8], name: &str| -> FoundModels {
+            models_of_bytes(bytes, name, &crate::variables::ReadingBudget::new(1 << 24)).unwrap()
+        };
         let before = read(DATASET.as_bytes(), "one.json");
         let text = written(&before.models);
         let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
@@ -160,7 +162,7 @@ mod tests {
     #[test]
     fn a_file_of_models_made_by_hand_is_read_as_far_as_it_goes() {
         let text = br#"{"format": "gdcm-models", "version": 1, "models": [{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}]}"#;
-        let found = models_of_bytes(text, "models.json", 1 << 20).unwrap();
+        let found = models_of_bytes(text, "models.json", &crate::variables::ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(found.models[0].draft.matrices[0].as_ref().unwrap()[(0, 0)], -1.0);
     }
 }

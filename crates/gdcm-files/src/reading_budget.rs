@@ -69,7 +69,8 @@ impl<'p> ReadingBudget<'p> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        let work = self.work.get().saturating_add(steps);
+        // Whoever asks has done something since it asked last.
+        let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             let most_millions = self.most_work / 1_000_000;
             return Err(VariableFault::TooMuchWork { variable: variable.to_owned(), most_millions });
@@ -114,5 +115,85 @@ mod tests {
         stop.store(true, Ordering::Relaxed);
         assert_eq!(budget.take(u64::MAX, 1, ""), Err(VariableFault::Stopped));
         assert_eq!(budget.work(0, ""), Err(VariableFault::Stopped));
+    }
+}
+
+#[cfg(test)]
+mod limits_tests {
+    use gdcm_core::dataset::limits::{
+        LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
+        MOST_MODELS_IN_ALL, MOST_STATES,
+    };
+    use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, limits};
+    use gdcm_core::study::{Kind, SETTINGS};
+    use gdcm_core::units::number;
+
+    use super::MOST_WORK;
+    use crate::importer::{DEEPEST, LARGEST_FILE, MOST_FILES, MOST_MEMORY};
+    use crate::recognise::{DEEPEST as DEEPEST_VALUE, MOST_FOUND};
+    use crate::record_files::MOST_RECORDS;
+    use crate::study_file::MOST_VARIANTS;
+
+    fn of_files() -> String {
+        let mib = |bytes: u64| format!("{} MiB", bytes >> 20);
+        let rows = [
+            ("a file of other programs", mib(LARGEST_FILE)),
+            ("text of a file, unpacked", mib(LARGEST_TEXT)),
+            ("memory for what a file holds, beside a copy of the models or records found in it", mib(MOST_MEMORY)),
+            (
+                "work on a file: bytes of text, elements of arrays, values, names compared",
+                format!("{} million steps", MOST_WORK / 1_000_000),
+            ),
+            ("files of the folders that are given", MOST_FILES.to_string()),
+            ("folders inside one another", DEEPEST.to_string()),
+            (
+                "models among the variables of a file; values inside one another",
+                format!("{MOST_FOUND}; {DEEPEST_VALUE}"),
+            ),
+            ("records of an archive", MOST_RECORDS.to_string()),
+            ("inputs, outputs", format!("{MOST_CHANNELS} each")),
+            ("conditions", MOST_CONDITIONS.to_string()),
+            ("models of a bundle; of a file", format!("{MOST_MODELS}; {MOST_MODELS_IN_ALL}")),
+            ("records of a condition", limits::MOST_RECORDS.to_string()),
+            ("states of a model", MOST_STATES.to_string()),
+            ("frequencies of a measured response", MOST_FREQUENCIES.to_string()),
+            ("coordinates of a perturbation", MOST_COORDINATES.to_string()),
+            ("variants of a study", MOST_VARIANTS.to_string()),
+            ("delay of a model's channel", format!("{} s", number(GREATEST_CHANNEL_DELAY_S))),
+        ];
+        rows.map(|(what, most)| format!("| {what} | {most} |\n")).concat()
+    }
+
+    fn of_settings() -> String {
+        let row = |setting: &&gdcm_core::study::Setting| {
+            let ([least, greatest], whole) = match setting.kind {
+                Kind::Number { range, whole, .. } => (range, whole),
+                Kind::Optional { range, .. } | Kind::Range { range, .. } => (range, false),
+                _ => return None,
+            };
+            let kind = if whole { ", a whole number" } else { "" };
+            let unit = if setting.unit.file.is_empty() { String::new() } else { format!(" {}", setting.unit.file) };
+            let (option, name) = (setting.option, setting.name);
+            Some(format!("| {name}{kind} | `{option}` | {}{unit} | {}{unit} |\n", number(least), number(greatest)))
+        };
+        SETTINGS.iter().filter_map(row).collect()
+    }
+
+    #[test]
+    fn the_limits_of_the_documentation_are_those_of_the_program() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
+        let text = std::fs::read_to_string(path).unwrap();
+        let mut parts: Vec<&str> = text.split_inclusive("|---|\n").collect();
+        let [_, files, settings] = parts.as_mut_slice() else { panic!("two tables") };
+        let end = |part: &str| {
+            part.lines().take_while(|line| line.starts_with('|')).map(|line| line.len() + 1).sum::<usize>()
+        };
+        let (files, settings) = (&files[..end(files)], &settings[..end(settings)]);
+        if std::env::var_os("GDCM_WRITE_FILES").is_some() {
+            std::fs::write(path, text.replace(files, &of_files()).replace(settings, &of_settings())).unwrap();
+            return;
+        }
+        assert_eq!(files, of_files());
+        assert_eq!(settings, of_settings());
     }
 }

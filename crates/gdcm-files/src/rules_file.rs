@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::assembly::{ChannelRule, NamePattern, RowRole, RowRule, Rules, UnitRule, standard_patterns};
+use gdcm_core::assembly::{ChannelRule, NamePattern, RowRule, Rules, Signs, UnitRule, standard_patterns};
 use gdcm_core::dataset::Location;
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
-use gdcm_core::whole_number::{whole, whole_or_none};
+use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault, FileError};
@@ -50,97 +50,53 @@ fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
         })
     };
     let patterns = text.patterns.iter().enumerate().map(pattern).collect::<Result<_, _>>()?;
-    let rows = text.models.into_iter().map(|(key, row)| Ok((key.clone(), row_of(&key, row)?)));
+    let of_roles = text.role_signs.iter().map(|(role, signs)| (format!("role_signs, {role}"), signs));
+    let of_models =
+        text.models.iter().filter_map(|(key, row)| Some((format!("models, {key}, signs"), row.signs.as_ref()?)));
+    for (place, signs) in std::iter::once(("signs".to_owned(), &text.signs)).chain(of_roles).chain(of_models) {
+        if let Some((channel, sign)) = signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
+            let fault = ContentFault::Word { expected: "1 or -1".to_owned(), found: sign.to_string() };
+            return Err(ContentError::new(Location::entry(format!("{place}, {channel}")), fault));
+        }
+    }
+    if let Some(role) = text.role_signs.keys().find(|role| !matches!(role.as_str(), "identified" | "physics")) {
+        let fault = ContentFault::Word { expected: "\"identified\" or \"physics\"".to_owned(), found: role.clone() };
+        return Err(ContentError::new(Location::entry("role_signs".to_owned()), fault));
+    }
     Ok(Rules {
         name: text.name,
         description: text.description,
-        inputs: text.inputs.into_iter().map(channel_of).collect(),
-        outputs: text.outputs.into_iter().map(channel_of).collect(),
+        inputs: text.inputs,
+        outputs: text.outputs,
         on_axis: text.on_axis,
         band: (text.band_rad_s[0], text.band_rad_s[1]),
         patterns,
-        units: text
-            .conversions
-            .into_iter()
-            .map(|text| UnitRule { channel: text.channel, from: text.from, factor: text.factor })
-            .collect(),
+        units: text.conversions,
+        signs: text.signs,
+        role_signs: text.role_signs,
+        sample_time_s: text.sample_time_s,
         headings: text.headings,
-        rows: rows.collect::<Result<_, ContentError>>()?,
-    })
-}
-
-fn channel_of(text: ChannelText) -> ChannelRule {
-    ChannelRule { name: text.name, unit: text.unit, aliases: text.aliases, unit_in_files: text.unit_in_files }
-}
-
-fn row_of(key: &str, text: RowText) -> Result<RowRule, ContentError> {
-    let role = match &text.role {
-        None => None,
-        Some(word) => Some(RowRole::of(word).ok_or_else(|| {
-            let expected = "\"nominal\", \"perturbed\" or \"identified\"".to_owned();
-            ContentError::new(
-                Location::entry(format!("models, {key}, role")),
-                ContentFault::Word { expected, found: word.clone() },
-            )
-        })?),
-    };
-    Ok(RowRule {
-        left_out: text.left_out,
-        condition: text.condition,
-        role,
-        name: text.name,
-        airspeed_kt: text.airspeed_kt,
-        altitude: text.altitude,
-        altitude_ft: text.altitude_ft,
-        weight: text.weight,
-        mass_kg: text.mass_kg,
-        method: text.method,
-        perturbation: text.perturbation,
-        inputs: text.inputs,
-        outputs: text.outputs,
+        rows: text.models,
     })
 }
 
 fn text_of(rules: &Rules) -> RulesText {
-    let channel = |rule: &ChannelRule| ChannelText {
-        name: rule.name.clone(),
-        unit: rule.unit.clone(),
-        aliases: rule.aliases.clone(),
-        unit_in_files: rule.unit_in_files.clone(),
-    };
-    let conversion =
-        |rule: &UnitRule| UnitText { channel: rule.channel.clone(), from: rule.from.clone(), factor: rule.factor };
     RulesText {
         format: FORMAT.name.to_owned(),
         version: FORMAT.version,
         name: rules.name.clone(),
         description: rules.description.clone(),
-        inputs: rules.inputs.iter().map(channel).collect(),
-        outputs: rules.outputs.iter().map(channel).collect(),
+        inputs: rules.inputs.clone(),
+        outputs: rules.outputs.clone(),
         on_axis: rules.on_axis.clone(),
         band_rad_s: [rules.band.0, rules.band.1],
-        conversions: rules.units.iter().map(conversion).collect(),
+        conversions: rules.units.clone(),
         patterns: rules.patterns.iter().map(|pattern| pattern.as_str().to_owned()).collect(),
+        signs: rules.signs.clone(),
+        role_signs: rules.role_signs.clone(),
+        sample_time_s: rules.sample_time_s,
         headings: rules.headings.clone(),
-        models: rules.rows.iter().map(|(key, row)| (key.clone(), row_text(row))).collect(),
-    }
-}
-
-fn row_text(row: &RowRule) -> RowText {
-    RowText {
-        left_out: row.left_out,
-        condition: row.condition,
-        role: row.role.map(|role| role.word().to_owned()),
-        name: row.name.clone(),
-        airspeed_kt: row.airspeed_kt,
-        altitude: row.altitude.clone(),
-        altitude_ft: row.altitude_ft,
-        weight: row.weight.clone(),
-        mass_kg: row.mass_kg,
-        method: row.method.clone(),
-        perturbation: row.perturbation.clone(),
-        inputs: row.inputs.clone(),
-        outputs: row.outputs.clone(),
+        models: rules.rows.clone(),
     }
 }
 
@@ -161,22 +117,31 @@ pub(super) struct RulesText {
     #[serde(default)]
     pub(super) description: String,
     #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(super) inputs: Vec<ChannelText>,
+    pub(super) inputs: Vec<ChannelRule>,
     #[serde(deserialize_with = "list::<MOST_CHANNELS, _, _>")]
-    pub(super) outputs: Vec<ChannelText>,
+    pub(super) outputs: Vec<ChannelRule>,
     #[serde(default, deserialize_with = "list::<MOST_PAIRS, _, _>")]
     pub(super) on_axis: Vec<(String, String)>,
     pub(super) band_rad_s: [f64; 2],
     #[serde(default, deserialize_with = "list::<MOST_PATTERNS, _, _>")]
-    pub(super) conversions: Vec<UnitText>,
+    pub(super) conversions: Vec<UnitRule>,
     #[serde(default = "standard", deserialize_with = "list::<MOST_PATTERNS, _, _>")]
     pub(super) patterns: Vec<String>,
+    /// Signs of channels in all files.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) signs: Signs,
+    /// Signs of channels in the models of a role, "identified" or "physics".
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) role_signs: BTreeMap<String, Signs>,
+    /// Sample time of models without one \[s\], 0 of continuous-time models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) sample_time_s: Option<f64>,
     /// What the columns of tables hold, by file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) headings: BTreeMap<String, Vec<String>>,
     /// What is said of single models, by file and variable.
     #[serde(default)]
-    pub(super) models: BTreeMap<String, RowText>,
+    pub(super) models: BTreeMap<String, RowRule>,
 }
 
 /// The patterns of a file that names none.
@@ -184,57 +149,10 @@ fn standard() -> Vec<String> {
     standard_patterns().iter().map(|pattern| pattern.as_str().to_owned()).collect()
 }
 
-#[derive(Deserialize, Serialize)]
-pub(super) struct ChannelText {
-    pub(super) name: String,
-    #[serde(default)]
-    pub(super) unit: String,
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) aliases: Vec<String>,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) unit_in_files: Option<String>,
-}
-
-#[derive(Deserialize, Serialize)]
-pub(super) struct UnitText {
-    pub(super) channel: String,
-    pub(super) from: String,
-    pub(super) factor: f64,
-}
-
-#[derive(Default, Deserialize, Serialize)]
-#[serde(default)]
-pub(super) struct RowText {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) left_out: Option<bool>,
-    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "whole_or_none")]
-    pub(super) condition: Option<i64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) role: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) name: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) airspeed_kt: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) altitude: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) altitude_ft: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) weight: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) mass_kg: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) method: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) perturbation: Option<BTreeMap<String, f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) inputs: Option<Vec<String>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) outputs: Option<Vec<String>>,
-}
-
 #[cfg(test)]
 mod tests {
+    use gdcm_core::assembly::RowRole;
+
     use crate::output_set::Existing;
 
     use super::*;
@@ -252,10 +170,14 @@ mod tests {
             role: Some(RowRole::Nominal),
             airspeed_kt: Some(45.0),
             left_out: Some(false),
+            signs: Some([("R".to_owned(), -1.0)].into()),
+            sample_time_s: Some(0.02),
             ..RowRule::default()
         };
         rules.rows.insert("c03/nom.mat".into(), row);
         rules.headings.insert("frf.csv".into(), vec!["omega [Hz]".into(), "re".into(), "im".into()]);
+        rules.signs.insert("NZ".into(), -1.0);
+        rules.role_signs.insert("identified".into(), [("NZ".to_owned(), 1.0)].into());
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("week.gdcm-rules.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
@@ -272,7 +194,9 @@ mod tests {
             r#"{"format": "gdcm-rules", "version": 1, "name": "", "inputs": [], "outputs": [], "band_rad_s": [1, 2], "#;
         for (rest, expected) in [
             (r#""patterns": ["("]}"#, "patterns, entry 1"),
-            (r#""models": {"a.mat": {"role": "trim"}}}"#, "models, a.mat, role"),
+            (r#""models": {"a.mat": {"role": "trim"}}}"#, "a.mat"),
+            (r#""signs": {"NZ": -2}}"#, "signs, NZ"),
+            (r#""role_signs": {"nominal": {"NZ": -1}}}"#, "role_signs"),
         ] {
             std::fs::write(&path, format!("{start}{rest}")).unwrap();
             let error = load_rules(&path).unwrap_err().to_string();

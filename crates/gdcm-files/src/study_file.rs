@@ -23,7 +23,7 @@ use crate::output_set::{Existing, OutputSet};
 use crate::source::Source;
 
 /// Most variants that a study file may hold.
-const MOST_VARIANTS: usize = 1000;
+pub(crate) const MOST_VARIANTS: usize = 1000;
 
 /// What a study file calls itself.
 const FORMAT: Format = Format { name: "gdcm-study", version: 1 };

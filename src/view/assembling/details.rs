@@ -112,6 +112,8 @@ fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let outputs = channel_names(&found.outputs, rule.and_then(|rule| rule.outputs.as_ref()));
     let condition = row.condition.map(|of| of.to_string());
     let trim = Some(trim_words(&row.perturbation));
+    let signs = rule.and_then(|rule| rule.signs.as_ref()).map(trim_words);
+    let sample_time = part.sample_time_s.or(found.draft.timing.sample_time_s).map(number);
     vec![
         field("condition", condition, "a number", Says::Other(say_condition)),
         field("name", Some(row.name.clone()), "in its bundle", Says::Text(|row| &mut row.name)),
@@ -122,6 +124,8 @@ fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
         field("mass [kg]", row.mass_kg.map(number), "kg", Says::Number(|row| &mut row.mass_kg)),
         field("inputs", Some(inputs), "in the file's order: LON, LAT", Says::Names(|row| &mut row.inputs)),
         field("outputs", Some(outputs), "in the file's order: P, Q", Says::Names(|row| &mut row.outputs)),
+        field("signs", signs, "of channels with the other sign: NZ -1", Says::Other(say_signs)),
+        field("sample time", sample_time, "s; 0 continuous", Says::Number(|row| &mut row.sample_time_s)),
         match row.role {
             Some(RowRole::Identified) => {
                 field("method", row.method.clone(), "CT-PBSID", Says::Text(|row| &mut row.method))
@@ -161,15 +165,30 @@ fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
 
 /// "roll_deg 5, airspeed_kt -10": a coordinate and its offset, separated by commas.
 fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
+    row.perturbation = Some(numbers_by_name(text, "a coordinate and a number as in \"roll_deg 5\"")?);
+    Ok(())
+}
+
+/// "NZ -1, R 1": a channel of the dataset and its sign, separated by commas; an empty text says nothing.
+fn say_signs(text: &str, row: &mut RowRule) -> Result<(), String> {
+    let signs = numbers_by_name(text, "a channel and 1 or -1 as in \"NZ -1\"")?;
+    if let Some((channel, sign)) = signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
+        return Err(format!("the sign of {channel}: expected 1 or -1, found {}", number(*sign)));
+    }
+    row.signs = Some(signs).filter(|signs| !signs.is_empty());
+    Ok(())
+}
+
+/// Names and numbers, separated by commas.
+fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, String> {
     let mut offsets = BTreeMap::new();
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
-        let wrong = || format!("expected a coordinate and a number as in \"roll_deg 5\", found \"{part}\"");
+        let wrong = || format!("expected {expected}, found \"{part}\"");
         let (coordinate, by) = part.rsplit_once(' ').ok_or_else(wrong)?;
         let by = typed_number(by)?.ok_or_else(wrong)?;
         offsets.insert(coordinate.trim().to_owned(), by);
     }
-    row.perturbation = Some(offsets);
-    Ok(())
+    Ok(offsets)
 }
 
 const HEADING_WIDTH: f32 = 180.0;
@@ -214,6 +233,9 @@ mod tests {
         say_trim("roll_deg 5, airspeed_kt -10", &mut row).unwrap();
         assert_eq!(trim_words(&row.perturbation.clone().unwrap()), "airspeed_kt -10, roll_deg 5");
         assert!(say_trim("roll", &mut row).unwrap_err().contains("roll_deg 5"));
+        say_signs("NZ -1", &mut row).unwrap();
+        assert_eq!(row.signs.as_ref().and_then(|signs| signs.get("NZ")), Some(&-1.0));
+        assert!(say_signs("NZ -2", &mut row).unwrap_err().contains("1 or -1"));
         say_condition("3", &mut row).unwrap();
         assert_eq!(row.condition, Some(3));
         assert!(say_condition("three", &mut row).is_err());

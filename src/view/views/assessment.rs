@@ -12,6 +12,7 @@ use gdcm_files::figure::{
     Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans, Stroke, decimals,
 };
 
+use super::View;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, NamedFigure, figure_ui};
@@ -93,7 +94,7 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
         return text_table_ui(ui, state, &table, palette, commands);
     }
     key_ui(ui, palette);
-    let mut view = std::mem::take(&mut state.display.assessment);
+    let mut view = state.display.figures.remove(&View::Assessment).unwrap_or_default();
     let plots = AssessmentPlots { state, table: &table, pairs: assessed_pairs(state) };
     let ids: Vec<MarkId> = state.dataset().conditions().iter().map(|of| MarkId::Condition(of.id())).collect();
     let figure = plots.pairs.iter().map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
@@ -118,7 +119,7 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
         }
     }
-    state.display.assessment = view;
+    state.display.figures.insert(View::Assessment, view);
 }
 
 /// A plot is never smaller \[pt\].

@@ -10,7 +10,9 @@ use gdcm_files::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_chan
 use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_within_ui, rows};
+use crate::view::plot::{
+    FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_ui, figure_within_ui, rows,
+};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -55,6 +57,10 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     let (mut inputs, mut outputs) = (plots.figure.clone(), plots.figure.clone());
     inputs.plots.truncate(state.dataset().inputs().len());
     outputs.plots.drain(..inputs.plots.len());
+    if plots.figure.plots.is_empty() {
+        let scene = plots.scene("channels", &plots.figure, state.results.absence());
+        figure_ui(ui, &scene, &mut view.inputs, palette);
+    }
     let rect = ui.available_rect_before_wrap();
     // As much height as their rows need.
     let half = vec2(rect.width(), 0.5 * rect.height());
@@ -64,11 +70,11 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         ("Input channels", upper, &inputs, 0, &mut view.inputs),
         ("Output channels", lower, &outputs, inputs.plots.len(), &mut view.outputs),
     ] {
-        let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
-        if !figure.plots.is_empty() {
-            let font = FontId::proportional(SMALL_SIZE);
-            ui.painter().text(place, Align2::LEFT_CENTER, name, font, palette.dim_text);
+        if figure.plots.is_empty() {
+            continue;
         }
+        let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
+        ui.painter().text(place, Align2::LEFT_CENTER, name, FontId::proportional(SMALL_SIZE), palette.dim_text);
         let inner = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
         let scene = FigureScene { words: (&plots, first), ..plots.scene(name, figure, state.results.absence()) };
         let events = figure_within_ui(ui, inner, &scene, view, palette);

@@ -9,8 +9,8 @@ use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_va
 use gdcm_core::uncertainty::VarianceDecomposition;
 use gdcm_core::units::{s_to_ms, signed};
 
+use super::View;
 use super::net_gain::net_gain_pairs;
-use crate::view::arrangement::View;
 use crate::view::command::Command;
 use crate::view::figures::figure_button_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};

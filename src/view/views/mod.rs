@@ -1,4 +1,14 @@
-//! The plots between the side panels, each with its header: what is drawn, and which commands its events stand for.
+//! The plots between the side panels, each with its header: what is drawn, and which commands its events stand for. Which there are,
+//! and what each needs, stands in one list.
+
+use std::sync::Arc;
+
+use egui::{Button, Role, Ui, WidgetInfo};
+use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, SimulationJob, VariantJob};
+use gdcm_files::figure::FigureKind;
+use serde::{Deserialize, Serialize};
+
+use super::{Command, Palette, State};
 
 mod across;
 mod assessment;
@@ -23,3 +33,259 @@ pub(in crate::view) use frequency::{bode_options, condition_source};
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;
+
+/// One of the plots between the side panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum View {
+    /// The focused response: magnitude and phase.
+    Bode,
+    /// What the fit sees of it.
+    Error,
+    /// Every response, small.
+    Overview,
+    /// One response in every condition.
+    Across,
+    /// Poles and modes of every model of the condition.
+    Poles,
+    /// Channel gains against airspeed (Figures 3 and 4).
+    Channels,
+    /// What the correction is worth (Figures 8 to 19).
+    Assessment,
+    /// What the scatter of the gains is made of, and what speaks for the schedule.
+    Evidence,
+    /// Decisions kept under names, beside the present ones.
+    Compare,
+    /// Net gains against airspeed (Figures 6 and 7).
+    NetGain,
+    /// Flight records of the condition, and models identified from them.
+    Records,
+}
+
+impl View {
+    /// Every view, in the order of the menu.
+    pub const ALL: [Self; 11] = [
+        Self::Bode,
+        Self::Overview,
+        Self::Across,
+        Self::Poles,
+        Self::Records,
+        Self::Channels,
+        Self::Assessment,
+        Self::Evidence,
+        Self::Compare,
+        Self::NetGain,
+        Self::Error,
+    ];
+
+    /// What its tab says.
+    pub fn name(self) -> &'static str {
+        self.kind().name
+    }
+
+    /// All that the window knows of it: tabs, menus, the palette, background jobs and figures read this list.
+    pub fn kind(self) -> ViewKind {
+        match self {
+            Self::Bode => ViewKind {
+                title: ViewTitle::Response,
+                tools: |ui, _, _, commands| fit_ui(ui, "Fit", commands),
+                tools_width: 90.0,
+                figure: Some(FigureKind::Bode),
+                ..ViewKind::new("Bode", "Magnitude and phase of the response in focus", bode_view_ui)
+            },
+            Self::Error => ViewKind {
+                title: ViewTitle::Response,
+                tools: |ui, state, _, commands| {
+                    fit_ui(ui, "Fit the errors", commands);
+                    error_header_ui(ui, state, commands);
+                },
+                tools_width: 260.0,
+                is_lower: true,
+                figure: Some(FigureKind::Error),
+                ..ViewKind::new(
+                    "Error",
+                    "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+                    error_view_ui,
+                )
+            },
+            Self::Overview => ViewKind {
+                title: ViewTitle::Condition,
+                tools_width: 90.0,
+                figure: Some(FigureKind::Overview),
+                ..ViewKind::new("Overview", "Every response of the condition, small", overview_view_ui)
+            },
+            Self::Across => ViewKind {
+                tools: across_header_ui,
+                tools_width: 330.0,
+                needs: |state| vec![Need::Across(across_job(state))],
+                figure: Some(FigureKind::Airspeeds),
+                ..ViewKind::new(
+                    "Airspeeds",
+                    "The response in focus in every condition, coloured by airspeed",
+                    across_view_ui,
+                )
+            },
+            Self::Poles => ViewKind {
+                title: ViewTitle::Condition,
+                tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
+                tools_width: 180.0,
+                needs: |state| {
+                    let condition = state.dataset().condition(state.condition().id());
+                    condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of) })).into_iter().collect()
+                },
+                figure: Some(FigureKind::Poles),
+                ..ViewKind::new(
+                    "Poles",
+                    "Poles of every model of the condition in the s-plane, and the modes in a table",
+                    poles_view_ui,
+                )
+            },
+            Self::Records => ViewKind {
+                title: ViewTitle::Condition,
+                tools: |ui, state, _, commands| super::records::records_header_ui(ui, state, commands),
+                tools_width: 380.0,
+                needs: |state| super::records::simulation_jobs(state).into_iter().map(Need::Simulation).collect(),
+                ..ViewKind::new(
+                    "Records",
+                    "Flight records of the condition, and models identified from them",
+                    super::records::records_view_ui,
+                )
+            },
+            Self::Channels => ViewKind {
+                tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
+                tools_width: 410.0,
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Channels),
+                ..ViewKind::new("Channels", "Gain of every channel against airspeed", channels_view_ui)
+            },
+            Self::Assessment => ViewKind {
+                tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
+                tools_width: 640.0,
+                is_of_all_conditions: true,
+                needs: |state| {
+                    let analysis = state.results.analysis.as_ref().filter(|_| state.analysis().is_some());
+                    let choice = assessment_choice(state);
+                    let job = analysis.map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice });
+                    job.map(Need::Assessment).into_iter().collect()
+                },
+                figure: Some(FigureKind::Assessment),
+                ..ViewKind::new(
+                    "Assessment",
+                    "What the correction is worth, condition by condition",
+                    assessment_view_ui,
+                )
+            },
+            // The button of its figure stands in its first line: it has no tools.
+            Self::Evidence => ViewKind {
+                is_of_all_conditions: true,
+                figure: Some(FigureKind::Evidence),
+                ..ViewKind::new(
+                    "Evidence",
+                    "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
+                    evidence_view_ui,
+                )
+            },
+            Self::Compare => ViewKind {
+                needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
+                ..ViewKind::new(
+                    "Compare",
+                    "Variants: decisions kept under names, beside the present ones",
+                    compare_view_ui,
+                )
+            },
+            Self::NetGain => ViewKind {
+                tools: net_gain_header_ui,
+                tools_width: NET_GAIN_CONTROLS,
+                is_of_all_conditions: true,
+                is_lower: true,
+                figure: Some(FigureKind::NetGain),
+                ..ViewKind::new(
+                    "Net gain",
+                    "Net gain of the held responses against airspeed, with the schedule",
+                    net_gain_view_ui,
+                )
+            },
+        }
+    }
+}
+
+/// One kind of view: what it shows, which background results it needs, and its tools.
+#[derive(Clone, Copy)]
+pub struct ViewKind {
+    /// What its tab says.
+    pub name: &'static str,
+    /// What it shows, in a sentence.
+    pub purpose: &'static str,
+    /// Draws it.
+    pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
+    /// What its header says besides.
+    pub title: ViewTitle,
+    /// The controls in its header, laid out from right to left.
+    pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
+    /// The width that they need \[pt\]; the title takes what is left. A view without has no header.
+    pub tools_width: f32,
+    /// What has to be computed for it beside the live answer.
+    pub needs: fn(&State) -> Vec<Need>,
+    /// Whether it shows results of every condition: it is said where those are of older settings.
+    pub is_of_all_conditions: bool,
+    /// Whether it stands in the second group of tabs at first.
+    pub is_lower: bool,
+    /// What it is on paper. Variants are tables, which are saved as such; of records what is identified is saved.
+    pub figure: Option<FigureKind>,
+}
+
+impl ViewKind {
+    fn new(
+        name: &'static str,
+        purpose: &'static str,
+        draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
+    ) -> Self {
+        Self {
+            name,
+            purpose,
+            draw,
+            title: ViewTitle::None,
+            tools: |_, _, _, _| {},
+            tools_width: 0.0,
+            needs: |_| Vec::new(),
+            is_of_all_conditions: false,
+            is_lower: false,
+            figure: None,
+        }
+    }
+}
+
+/// What the header of a view says of what is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewTitle {
+    /// Nothing.
+    None,
+    /// The condition.
+    Condition,
+    /// The response in focus, and the condition.
+    Response,
+}
+
+/// What a view has to have computed beside the live answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Need {
+    /// Modes of the models of the condition.
+    Modes(ModesJob),
+    /// An assessment.
+    Assessment(AssessmentJob),
+    /// One model of each condition.
+    Across(AcrossJob),
+    /// The analysis of a variant.
+    Variant(VariantJob),
+    /// A model against a record in time.
+    Simulation(SimulationJob),
+}
+
+/// Brings every curve back into view; the button has this accessible name.
+fn fit_ui(ui: &mut Ui, name: &str, commands: &mut Vec<Command>) {
+    let fit = ui.add(Button::new("Fit").small());
+    let enabled = ui.is_enabled();
+    fit.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, name));
+    if fit.on_hover_text("Bring every curve into view (F, or double click)").clicked() {
+        commands.push(Command::FitPlots);
+    }
+}

@@ -7,11 +7,12 @@ use gdcm_core::study::setting;
 use gdcm_files::figure::{Across, Classes, GainQuantity, net_gain_figure};
 use serde::{Deserialize, Serialize};
 
+use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::figure_ui;
+use crate::view::plot::{FigureView, figure_ui};
 use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
@@ -100,12 +101,12 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
-    let mut view = std::mem::take(&mut state.display.net_gain);
+    let mut view = state.display.figures.remove(&View::NetGain).unwrap_or_default();
     let plots = net_gain_plots(state);
     let scene = plots.scene("net gain", &plots.figure, message);
     let events = figure_ui(ui, &scene, &mut view, palette);
     commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
-    state.display.net_gain = view;
+    state.display.figures.insert(View::NetGain, view);
 }
 
 /// What speaks for each form of the schedule; a click on a form takes it.
@@ -240,7 +241,7 @@ pub fn dot_key(state: &State) -> String {
         let others = if others.is_empty() { String::new() } else { format!(", open {}", others.join(", ")) };
         words.push(format!("weight filled {first}{others}"));
     }
-    if state.display.net_gain.leaves_labels_out() {
+    if state.display.figures.get(&View::NetGain).is_some_and(FigureView::leaves_labels_out) {
         words.push("number without room: point at the dot".to_owned());
     }
     words.join(" · ")

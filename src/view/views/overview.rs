@@ -3,8 +3,8 @@
 use egui::Ui;
 use gdcm_core::dataset::Pair;
 
+use super::View;
 use super::frequency::{bode_curves, wished};
-use crate::view::arrangement::View;
 use crate::view::command::Command;
 use crate::view::palette::Palette;
 use crate::view::plot::{BodeCurve, CurveId, OverviewCell, OverviewEvent, OverviewScene, overview_ui};

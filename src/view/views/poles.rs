@@ -10,6 +10,7 @@ use gdcm_core::units::number;
 use gdcm_files::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
 use nalgebra::Complex;
 
+use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -48,7 +49,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         Some(_) => "No model of this condition has poles: they are known by measured responses",
         None => state.results.absence(),
     };
-    let mut view = std::mem::take(&mut state.display.poles);
+    let mut view = state.display.figures.remove(&View::Poles).unwrap_or_default();
     let figure = poles(state).map(|figure| dressed(figure, &view)).unwrap_or_default();
     let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
     let scene = FigureScene {
@@ -71,7 +72,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) | FigureEvent::Asked(_) => continue,
         });
     }
-    state.display.poles = view;
+    state.display.figures.insert(View::Poles, view);
 }
 
 /// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.

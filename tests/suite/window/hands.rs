@@ -33,7 +33,7 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
 fn a_dot_of_net_gain_says_how_it_was_computed() {
     let mut window = window();
     let fifth = ConditionId(5);
-    let at = state(&window).display.net_gain.screen_position(0, &MarkId::Condition(fifth)).unwrap();
+    let at = state(&window).display.figures[&View::NetGain].screen_position(0, &MarkId::Condition(fifth)).unwrap();
     secondary_click(&mut window, at);
     let pair = gdcm::view::views::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
@@ -64,7 +64,7 @@ fn a_bar_of_the_assessment_says_how_it_was_computed() {
     wait_until(&mut window, "the assessment", |window| state(window).assessment().is_some());
     window.run_steps(2);
     let second = ConditionId(2);
-    let foot = state(&window).display.assessment.position(0, [1.0, 0.0]).unwrap();
+    let foot = state(&window).display.figures[&View::Assessment].position(0, [1.0, 0.0]).unwrap();
     secondary_click(&mut window, foot + egui::vec2(0.0, -3.0));
     let pair = state(&window).dataset().measuring_pairs().marked().next().unwrap();
     let expected = state(&window).assessment().unwrap().change(second, pair).unwrap().total();

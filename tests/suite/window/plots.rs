@@ -1,5 +1,7 @@
 //! The plots, worked with the pointer.
 
+use gdcm::view::arrangement::View;
+
 use super::*;
 
 /// A point of the nominal model's curve.
@@ -153,9 +155,7 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
 #[test]
 fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
     let mut window = window();
-    let place = state(&window)
-        .display
-        .net_gain
+    let place = state(&window).display.figures[&View::NetGain]
         .screen_position(0, &MarkId::Condition(ConditionId(3)))
         .expect("condition 3 has a dot");
     window.hover_at(place);

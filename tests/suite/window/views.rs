@@ -77,7 +77,7 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
 
     // The fastest pole of some perturbed model stands clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
-    let at = state(&window).display.poles.position(0, *fastest).unwrap();
+    let at = state(&window).display.figures[&View::Poles].position(0, *fastest).unwrap();
     window.hover_at(at);
     window.run_steps(2);
     let meant = state(&window).display.hovered.clone().expect("the pole is pointed at");
@@ -139,7 +139,7 @@ fn freeing_a_response_does_not_take_its_net_gains_away() {
 fn a_click_on_a_dot_with_ctrl_takes_its_condition_out_of_the_schedule() {
     let mut window = window();
     let fifth = ConditionId(5);
-    let at = state(&window).display.net_gain.screen_position(0, &MarkId::Condition(fifth)).unwrap();
+    let at = state(&window).display.figures[&View::NetGain].screen_position(0, &MarkId::Condition(fifth)).unwrap();
     window.hover_at(at);
     window.run_steps(1);
     let press = |pressed| Event::PointerButton {

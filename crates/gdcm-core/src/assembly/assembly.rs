@@ -17,6 +17,8 @@ pub struct Part {
     pub inputs: ChannelMatch,
     /// Its outputs in the dataset's order.
     pub outputs: ChannelMatch,
+    /// The sample time that is said of it \[s\], as the file has none; 0 of a continuous-time model.
+    pub sample_time_s: Option<f64>,
 }
 
 /// Models found in files, and what the rules make of them.
@@ -127,6 +129,11 @@ impl Assembly {
             problems.push(Problem::of_all(ProblemKind::NoModels));
         }
         for (index, part) in self.taken() {
+            let said = self.rules.rows.get(&part.found.key());
+            if part.row.role != Some(RowRole::Identified) && said.is_none_or(|said| said.perturbation.is_none()) {
+                let unread = part.row.unread.iter().cloned();
+                problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart { part })));
+            }
             problems.extend(row_problems(part).into_iter().map(|kind| Problem::of(index, kind)));
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
@@ -176,8 +183,9 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     let outputs = labels(&found.outputs, said.and_then(|said| said.outputs.as_ref()));
     // A measured response may be one of several files that belong together.
     let partial = found.draft.response.is_some();
+    let signs = rules.signs_of(&found.key(), row.role);
     let matched = |side, labels: &[ChannelLabel], channels: &[ChannelRule]| {
-        ChannelMatch::of(side, labels, channels, &rules.units, partial)
+        ChannelMatch::of(side, labels, channels, (&rules.units, &signs), partial)
     };
     let mut channels = [matched("input", &inputs, &rules.inputs), matched("output", &outputs, &rules.outputs)];
     let names = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
@@ -188,7 +196,9 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
         }
     }
     let [inputs, outputs] = channels;
-    Part { found, row, inputs, outputs }
+    let sample_time_s = said.and_then(|said| said.sample_time_s).or(rules.sample_time_s);
+    let sample_time_s = sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
+    Part { found, row, inputs, outputs, sample_time_s }
 }
 
 /// What names, contents and rules say of each model.
@@ -217,6 +227,10 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
     let name = if model.variable().is_empty() { path.clone() } else { format!("{path}#{}", model.variable()) };
     for pattern in &rules.patterns {
         pattern.read(&name, &mut row);
+    }
+    // What else a hyphen and a number may be ("rev-3") is not asked about.
+    if !row.perturbation.is_empty() {
+        row.unread = unread_offsets(name.rsplit('/').next().unwrap_or(&name), &rules.patterns);
     }
     if let Origin::Identified { method, .. } = &model.draft.origin {
         row.role = row.role.or(Some(RowRole::Identified));
@@ -296,7 +310,27 @@ fn row_problems(part: &Part) -> Vec<ProblemKind> {
         }
         Some(_) => {}
     }
+    problems.extend(part.sample_time_s.is_none().then(|| missing_sample_time(part)).flatten());
     problems
+}
+
+/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, or as
+/// little outside as an unstable mode of a helicopter is, and half of them or more (and at least two) near 1. In continuous time the
+/// latter grow within a second.
+fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
+    /// Real part of a pole near 1, and the magnitude of one that is outside by little.
+    const NEAR: f64 = 0.5;
+    const OUTSIDE: f64 = 1.05;
+    let a =
+        part.found.draft.matrices[0].as_ref().filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
+    // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
+    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
+        return None;
+    }
+    let poles = a.complex_eigenvalues();
+    let near = poles.iter().filter(|pole| pole.re > NEAR).count();
+    let is_discrete = poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
+    is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
 }
 
 fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {

@@ -63,6 +63,97 @@ pub fn same_channel(a: &str, b: &str) -> bool {
     a == b || canonical(a) == canonical(b)
 }
 
+/// The directions that a name may say its channel is positive in, and those against them.
+const DIRECTIONS: [(&str, f64); 9] = [
+    ("up", 1.0),
+    ("right", 1.0),
+    ("forward", 1.0),
+    ("fwd", 1.0),
+    ("down", -1.0),
+    ("dn", -1.0),
+    ("left", -1.0),
+    ("aft", -1.0),
+    ("rearward", -1.0),
+];
+/// Names of the acceleration along the z axis by the axis, which points down in some programs and up in others; those of the load
+/// factor, which is positive up.
+const ALONG_Z: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
+const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
+
+/// A name and the marks of its sign: `-az`, `az (down)`, `az[+down]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignedName {
+    /// The name without the marks.
+    pub name: String,
+    /// Whether a minus stands before it.
+    pub minus: bool,
+    /// 1 where it is said to be positive up, right or forward, -1 where it is the other way round.
+    pub direction: Option<f64>,
+}
+
+impl SignedName {
+    /// Reads the marks of a name.
+    pub fn of(text: &str) -> Self {
+        let text = text.trim();
+        let begins_name = |rest: &str| rest.trim_start().starts_with(|letter: char| letter.is_alphabetic());
+        let (minus, rest) = match text.strip_prefix(['-', '\u{2212}']).filter(|rest| begins_name(rest)) {
+            Some(rest) => (true, rest.trim_start()),
+            None => (false, text.strip_prefix('+').filter(|rest| begins_name(rest)).unwrap_or(text)),
+        };
+        let marked = [('(', ')'), ('[', ']'), ('{', '}')].into_iter().find_map(|(open, close)| {
+            let (name, mark) = rest.strip_suffix(close)?.rsplit_once(open)?;
+            Some((name.trim(), direction_of(mark)?))
+        });
+        let (name, direction) = match marked.filter(|(name, _)| !name.is_empty()) {
+            Some((name, direction)) => (name, Some(direction)),
+            None => (rest, None),
+        };
+        Self { name: name.to_owned(), minus, direction }
+    }
+
+    /// The direction that is said, or that the name stands for.
+    fn known_direction(&self) -> Option<f64> {
+        self.direction.or(LOAD_FACTOR.contains(&folded_name(&self.name).as_str()).then_some(1.0))
+    }
+}
+
+/// What "down", "+down", "positive down", "-up" say: 1 where it is positive up, right or forward, -1 where it is the other way round.
+pub fn direction_of(mark: &str) -> Option<f64> {
+    let mark = mark.trim().to_lowercase();
+    let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
+        Some(word) => (-1.0, word),
+        None => (1.0, mark.trim_start_matches('+')),
+    };
+    let word = word.trim().trim_start_matches("positive").trim_start_matches("pos").trim_start_matches(['.', ' ']);
+    let word = word.trim_end_matches("positive").trim_end_matches('+').trim();
+    DIRECTIONS.iter().find(|(known, _)| *known == word).map(|(_, direction)| sign * direction)
+}
+
+/// What the numbers of a channel that a file calls `label` are multiplied by to be those of a channel called `channel`: 1 or -1; none
+/// where the names leave it open.
+///
+/// A minus is the sign. Where a direction is said, that of the other has to be known too: a load factor is positive up. `az` and `NZ`
+/// are the same but for a sign that neither says.
+pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
+    if label.trim() == channel.trim() {
+        return Some(1.0);
+    }
+    let (of_label, of_channel) = (SignedName::of(label), SignedName::of(channel));
+    let minus = if of_label.minus == of_channel.minus { 1.0 } else { -1.0 };
+    match (of_label.direction, of_channel.direction) {
+        (None, None) => {
+            let family = |name: &SignedName| {
+                let name = folded_name(&name.name);
+                (ALONG_Z.contains(&name.as_str()), LOAD_FACTOR.contains(&name.as_str()))
+            };
+            let is_open =
+                matches!((family(&of_label), family(&of_channel)), ((true, _), (_, true)) | ((_, true), (true, _)));
+            (!is_open || of_label.minus || of_channel.minus).then_some(minus)
+        }
+        _ => Some(minus * of_label.known_direction()? * of_channel.known_direction()?),
+    }
+}
+
 /// Names of the time between two samples \[s\], as they are usually written.
 pub const SAMPLE_TIME_NAMES: [&str; 7] =
     ["Ts", "dt", "tsam", "sample_time_s", "sample_time", "sampling_time", "Tsample"];
@@ -110,6 +201,28 @@ mod tests {
         for (a, b) in [("LON", "LAT"), ("P", "PED"), ("roll", "roll rate"), ("P", "Q")] {
             assert!(!same_channel(a, b), "{a} {b}");
         }
+    }
+
+    #[test]
+    fn a_mark_in_a_name_is_the_sign_and_is_never_dropped() {
+        for (label, channel, sign) in [
+            ("R", "R", Some(1.0)),
+            ("-R", "R", Some(-1.0)),
+            ("\u{2212}yaw rate", "R", Some(-1.0)),
+            ("-az", "NZ", Some(-1.0)),
+            ("az (down)", "NZ", Some(-1.0)),
+            ("az[+down]", "NZ", Some(-1.0)),
+            ("az (positive up)", "NZ", Some(1.0)),
+            ("az [-up]", "NZ", Some(-1.0)),
+            ("NZ", "nz", Some(1.0)),
+            ("az", "NZ", None),
+            ("w (down)", "W", None),
+            ("w (down)", "W (up)", Some(-1.0)),
+        ] {
+            assert_eq!(sign_between(label, channel), sign, "{label} as {channel}");
+        }
+        assert_eq!(SignedName::of("-az").name, "az");
+        assert_eq!(SignedName::of("az (g)").name, "az (g)", "a unit is no direction");
     }
 
     #[test]

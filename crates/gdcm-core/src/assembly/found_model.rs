@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{ChannelRule, Rules, same_channel};
+use serde::{Deserialize, Serialize};
+
+use super::{ChannelRule, Rules, SignedName, same_channel};
 use crate::dataset::{ConditionRecord, ModelDraft, ResponseDraft};
 use crate::units::number;
 
@@ -90,7 +92,8 @@ impl FoundModel {
 }
 
 /// The role of a model in its condition.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RowRole {
     /// The physics model at the condition's own trim.
     Nominal,
@@ -144,6 +147,8 @@ pub struct Row {
     pub method: Option<String>,
     /// Offsets of the trim, by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
+    /// Parts of its name that say how the trim differs and are not understood.
+    pub unread: Vec<String>,
 }
 
 impl Row {
@@ -190,7 +195,9 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
         // Models with matrices have all channels of the dataset; measured responses may have one each.
         let is_open = channels.is_empty() || (model.response().is_some() && first_is_measured);
         for label in of(model) {
-            let Some(name) = &label.name else { continue };
+            // The dataset's channel has the name without the marks of a sign.
+            let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else { continue };
+            let name = &name;
             let unit = label.unit.clone().unwrap_or_default();
             let known = channels.iter().position(|channel| same_channel(&channel.name, name));
             match known.map(|known| &mut channels[known]) {

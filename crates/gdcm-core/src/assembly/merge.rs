@@ -169,9 +169,13 @@ fn join_coherence(into: &mut ResponseDraft, response: &ResponseDraft, range: std
 fn model_of(part: &Part) -> ModelDraft {
     let mut model = converted(&part.found.draft, &part.inputs.uses, &part.outputs.uses);
     model.name.clone_from(&part.row.name);
+    if let Some(sample_time_s) = part.sample_time_s.filter(|step| *step > 0.0) {
+        model.timing.sample_time_s = Some(sample_time_s);
+    }
     let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
     let conversions = uses.filter_map(|used| used.words.clone());
-    let notes = part.inputs.notes.iter().chain(&part.outputs.notes).cloned();
+    let sampled = part.sample_time_s.map(|step| format!("sample time {} s, as is said", number(step)));
+    let notes = part.inputs.notes.iter().chain(&part.outputs.notes).cloned().chain(sampled);
     let said = model.source.as_ref().and_then(|source| source.note.clone());
     let words: Vec<String> = said.into_iter().chain(notes).chain(conversions).collect();
     if !words.is_empty() {

@@ -42,6 +42,34 @@ pub enum ProblemKind {
         /// What the file has, in words.
         found: String,
     },
+    /// A channel that the file calls by a name which leaves the sign open.
+    #[error(
+        "{channel} is called {found} in the file, which can be positive the other way: say its sign, 1 or -1 (\"signs\" in the rules, \
+         --sign {channel}=-1:all)"
+    )]
+    Sign {
+        /// The channel of the dataset.
+        channel: String,
+        /// Its name in the file.
+        found: String,
+    },
+    /// A model that looks like one of discrete time, and has no sample time.
+    #[error(
+        "all its poles lie inside the unit circle and {near} of {poles} near 1, as those of a discrete-time model do, and it has no \
+         sample time: enter it in s, or 0 of a continuous-time model (--sample-time)"
+    )]
+    NoSampleTime {
+        /// Poles near 1.
+        near: usize,
+        /// All.
+        poles: usize,
+    },
+    /// A part of the name that says how the trim differs and is not understood.
+    #[error("\"{part}\" in its name is not understood: say how its trim differs")]
+    TrimPart {
+        /// The part.
+        part: String,
+    },
     /// Two channels of the model are called the same.
     #[error("two {side}s of the model can be {channel}: {found}; say which")]
     AmbiguousChannel {

@@ -5,18 +5,24 @@ use std::fmt;
 
 use regex::{Regex, RegexBuilder};
 
+use serde::{Deserialize, Serialize};
+
 use super::{Row, RowRole};
+use crate::whole_number::whole_or_none;
 
 /// A channel of the dataset, and what files that do not say call its unit.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ChannelRule {
     /// Its name in the dataset.
     pub name: String,
     /// Its unit in the dataset; empty where it is still to be said.
+    #[serde(default)]
     pub unit: String,
-    /// Further names by which files call it.
+    /// Further names by which files call it; with a minus before it one whose sign is the other.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub aliases: Vec<String>,
     /// The unit that it has in files that do not say; none where that is still to be said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit_in_files: Option<String>,
 }
 
@@ -28,7 +34,7 @@ impl ChannelRule {
 }
 
 /// A conversion that units alone do not give, such as inches of a stick to percent of its travel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct UnitRule {
     /// The channel of the dataset.
     pub channel: String,
@@ -38,35 +44,58 @@ pub struct UnitRule {
     pub factor: f64,
 }
 
+/// What channels are multiplied by, 1 or -1, by their names in the dataset.
+pub type Signs = BTreeMap<String, f64>;
+
 /// What the engineer says otherwise than names and contents propose, of one model.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
+#[serde(default)]
 pub struct RowRule {
     /// Whether it is left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<bool>,
     /// Number of its condition.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "whole_or_none")]
     pub condition: Option<i64>,
     /// Its role.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub role: Option<RowRole>,
     /// Its name in its bundle.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// True airspeed of the condition \[kt\].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub airspeed_kt: Option<f64>,
     /// Altitude class.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude: Option<String>,
     /// Altitude \[ft\].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude_ft: Option<f64>,
     /// Weight class.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<String>,
     /// Mass \[kg\].
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
     /// Identification method.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
     /// Offsets of the trim; all of them, where any is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub perturbation: Option<BTreeMap<String, f64>>,
     /// Names of its inputs in its own order, where the file has none or wrong ones.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub inputs: Option<Vec<String>>,
     /// Names of its outputs in its own order.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub outputs: Option<Vec<String>>,
+    /// Signs of its channels, by their names in the dataset.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub signs: Option<Signs>,
+    /// Its sample time \[s\], where the file has none; 0 of a continuous-time model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sample_time_s: Option<f64>,
 }
 
 impl RowRule {
@@ -115,6 +144,12 @@ pub struct Rules {
     pub patterns: Vec<NamePattern>,
     /// Conversions that units alone do not give.
     pub units: Vec<UnitRule>,
+    /// Signs of channels in all files, in place of what their names say.
+    pub signs: Signs,
+    /// Signs of channels in the models of a role, "identified" or "physics", which go before those of all files.
+    pub role_signs: BTreeMap<String, Signs>,
+    /// Sample time of models without one \[s\], 0 of continuous-time models; none where it is asked for.
+    pub sample_time_s: Option<f64>,
     /// What the columns of tables hold, in place of their own headings: what a file of columns is read by.
     pub headings: Headings,
     /// What is said of single models, by [`super::FoundModel::key`].
@@ -133,9 +168,28 @@ impl Default for Rules {
             band: (0.5, 12.0),
             patterns: standard_patterns(),
             units: Vec::new(),
+            signs: Signs::new(),
+            role_signs: BTreeMap::new(),
+            sample_time_s: None,
             headings: Headings::new(),
             rows: BTreeMap::new(),
         }
+    }
+}
+
+impl Rules {
+    /// The signs that are said of the channels of a model: those of the model before those of its role, these before those of all.
+    pub fn signs_of(&self, key: &str, role: Option<RowRole>) -> Signs {
+        let mut signs = self.signs.clone();
+        let role = match role {
+            Some(RowRole::Identified) => Some("identified"),
+            Some(RowRole::Nominal | RowRole::Perturbed) => Some("physics"),
+            None => None,
+        };
+        let of_role = role.and_then(|role| self.role_signs.get(role));
+        let of_model = self.rows.get(key).and_then(|row| row.signs.as_ref());
+        signs.extend(of_role.into_iter().chain(of_model).flatten().map(|(name, sign)| (name.clone(), *sign)));
+        signs
     }
 }
 
@@ -229,6 +283,19 @@ impl NamePattern {
     }
 }
 
+/// The parts of a name that say an offset of the trim, as "dPHI+5" does, and that none of the patterns reads.
+pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
+    // A word, a sign and a number, which ends where a unit or the next part begins.
+    let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else { return Vec::new() };
+    let read: Vec<std::ops::Range<usize>> = patterns
+        .iter()
+        .flat_map(|pattern| pattern.regex.captures_iter(name).map(|found| found.get_match().range()))
+        .collect();
+    let is_read =
+        |part: &regex::Match<'_>| read.iter().any(|range| range.start < part.end() && part.start() < range.end);
+    offset.find_iter(name).filter(|part| !is_read(part)).map(|part| part.as_str().to_owned()).collect()
+}
+
 fn put(group: &str, text: &str, row: &mut Row) {
     let number = || text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite());
     let word = || Some(text.to_lowercase());
@@ -275,8 +342,9 @@ impl PartialEq for NamePattern {
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> Vec<NamePattern> {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
-    let offset =
-        |words: &str, coordinate: &str| format!(r"(?:^|[/_#, -])d?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})");
+    let offset = |words: &str, coordinate: &str| {
+        format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
+    };
     let texts = [
         r"(?:^|[/_ -])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
@@ -325,6 +393,15 @@ mod tests {
         assert_eq!((row.condition, row.airspeed_kt, row.weight.as_deref()), (Some(12), Some(120.0), Some("heavy")));
         let offsets: Vec<f64> = row.perturbation.values().copied().collect();
         assert_eq!(offsets, [-10.0, 150.0], "airspeed_kt, rate_of_climb_fpm");
+    }
+
+    #[test]
+    fn a_trim_of_which_a_part_is_not_understood_is_told() {
+        let unread = |name: &str| unread_offsets(name, &standard_patterns());
+        let row = read("c3/dV+5_dROC+150_dPHI+5");
+        assert_eq!(row.perturbation.into_values().collect::<Vec<_>>(), [5.0, 150.0, 5.0]);
+        assert!(unread("dV+5_dROC+150_dPHI+5").is_empty() && unread("V-10kt roc+150fpm").is_empty());
+        assert_eq!(unread("dV+5_flap-10"), ["flap-10"]);
     }
 
     #[test]

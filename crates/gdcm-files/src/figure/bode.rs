@@ -13,9 +13,9 @@ use super::curve::{BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLin
 use super::drawing::{Color, Hue};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Along, Band, Curve, Envelope, Mark, Note, Place, Rule};
-use super::request::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use super::responses::{AirspeedCache, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands};
 use super::role::Role;
+use super::units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 /// The ground of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);

@@ -13,7 +13,7 @@ use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};
 use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
 use super::curve::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::figure::{Figure, Plot};
-use super::request::PhaseErrorUnit;
+use super::units::PhaseErrorUnit;
 
 /// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
 /// correction, with G, D and the bounds.

@@ -1,5 +1,6 @@
 //! Where the panels of a figure stand on paper, and what stands around them.
 
+use gdcm_core::message_text::sanitized;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
@@ -269,14 +270,10 @@ pub struct Letter {
     pub advance: f64,
 }
 
-/// The letters of a line of words, in their order.
+/// The letters of a line of words, in their order; what has no shape of its own is spelt out.
 pub fn letters(words: &str) -> Vec<Letter> {
     let fonts: Vec<FontRef<'_>> = FONTS.iter().filter_map(|(_, bytes)| FontRef::new(bytes).ok()).collect();
-    words
-        .chars()
-        .filter(|character| !character.is_control())
-        .filter_map(|character| letter(&fonts, character))
-        .collect()
+    sanitized(words).chars().filter_map(|character| letter(&fonts, character)).collect()
 }
 
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {

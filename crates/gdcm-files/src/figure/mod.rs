@@ -18,6 +18,10 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::Pair;
+use gdcm_core::study::{AcrossRole, Analysis, AssessmentChoice, ConditionModes, Unobserved};
+
 mod assessment;
 mod axis;
 mod bode;
@@ -34,11 +38,11 @@ mod layout;
 mod mark;
 mod paint;
 mod poles;
-mod request;
 mod responses;
 mod role;
 mod tables;
 mod ticks;
+mod units;
 
 pub use assessment::*;
 pub use axis::*;
@@ -55,7 +59,129 @@ pub use layout::*;
 pub use mark::*;
 pub use paint::*;
 pub use poles::*;
-pub use request::*;
 pub use responses::*;
 pub use role::*;
 pub use ticks::*;
+pub use units::*;
+
+/// Which of the program's figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FigureKind {
+    /// Responses of one condition (Figures 2 and 5).
+    Bode,
+    /// What the fit sees of them.
+    Error,
+    /// Every response of one condition, small.
+    Overview,
+    /// Net gains against airspeed (Figures 6 and 7).
+    NetGain,
+    /// Gains or delays of the channels (Figures 3 and 4).
+    Channels,
+    /// What the scatter of the net gains is made of.
+    Evidence,
+    /// What the correction is worth (Figures 8 to 19).
+    Assessment,
+    /// Poles of every model of one condition.
+    Poles,
+    /// One response in every condition, coloured by airspeed.
+    Airspeeds,
+}
+
+impl FigureKind {
+    /// Every kind.
+    pub const ALL: [Self; 9] = [
+        Self::Bode,
+        Self::Error,
+        Self::Overview,
+        Self::NetGain,
+        Self::Channels,
+        Self::Evidence,
+        Self::Assessment,
+        Self::Poles,
+        Self::Airspeeds,
+    ];
+
+    /// Its name in a command and in the name of a file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bode => "bode",
+            Self::Error => "error",
+            Self::Overview => "overview",
+            Self::NetGain => "net-gain",
+            Self::Channels => "channels",
+            Self::Evidence => "evidence",
+            Self::Assessment => "assessment",
+            Self::Poles => "poles",
+            Self::Airspeeds => "airspeeds",
+        }
+    }
+
+    /// Whether it is made of error bars, which are then computed for it.
+    pub fn needs_bars(self) -> bool {
+        self == Self::Evidence
+    }
+
+    /// Whether it is a figure of one condition.
+    pub fn is_of_condition(self) -> bool {
+        matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles)
+    }
+}
+
+/// Which figure is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureRequest {
+    /// Which.
+    pub kind: FigureKind,
+    /// The responses that it is of, where it is of some.
+    pub pairs: Vec<Pair>,
+    /// The channels that it is of, where it is of channels.
+    pub channels: Vec<Channel>,
+    /// What is shown of channels.
+    pub measure: Measure,
+    /// Over what.
+    pub across: Across,
+    /// What is assessed; the paper's choice where none is given.
+    pub assessed: Option<AssessmentChoice>,
+    /// Which model of each condition, where one of each is shown.
+    pub across_role: AcrossRole,
+    /// How responses are shown.
+    pub bode: BodeOptions,
+}
+
+impl FigureRequest {
+    /// A figure of these responses and channels, shown as usual.
+    pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
+        let (measure, across) = (Measure::default(), Across::default());
+        let (across_role, bode) = (AcrossRole::default(), BodeOptions::default());
+        Self { kind, pairs, channels, measure, across, assessed: None, across_role, bode }
+    }
+
+    /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
+    /// analysis.
+    pub fn figure(&self, analysis: Option<&Analysis>, condition: Option<&ConditionSource<'_>>) -> Option<Figure> {
+        Some(match self.kind {
+            FigureKind::Bode => bode_figure(condition?, &self.pairs, &self.bode),
+            FigureKind::Error => error_figure(condition?, &self.pairs, &self.bode),
+            FigureKind::Overview => overview_figure(condition?, &self.bode),
+            FigureKind::NetGain => net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs),
+            FigureKind::Channels => {
+                let shown = (self.measure, self.across);
+                channels_figure(analysis?, analysis?.uncertainty.as_deref(), &self.channels, shown)
+            }
+            FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
+            FigureKind::Assessment => {
+                let analysis = analysis?;
+                assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))
+            }
+            FigureKind::Poles => {
+                let condition = condition?;
+                let modes = ConditionModes::of(&condition.curves.condition, &Unobserved).ok()?;
+                poles_figure(condition, &modes, &self.bode, &|id| match self.bode.zeros_of {
+                    Some(pair) => zeros_of_model(condition, pair, id),
+                    None => Vec::new(),
+                })
+            }
+            FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
+        })
+    }
+}

@@ -11,8 +11,8 @@ use super::axis::Range;
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
 use super::curve::{BodeBand, BodeCurve, Pane};
-use super::request::PhaseUnit;
 use super::role::Role;
+use super::units::PhaseUnit;
 
 /// Height that fitting gives to values outside the band on either side, as a part of the height within it.
 const OUTSIDE_PART: f64 = 0.4;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
 
 use super::axis::Axis;
@@ -14,8 +15,16 @@ impl Figure {
     pub fn tables(&self) -> Vec<Table> {
         let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) =
             self.panels().map(|(title, panel)| panel.tables(title)).unzip();
-        tables.into_iter().chain(of_bands.into_iter().flatten()).filter(|table| !table.rows.is_empty()).collect()
+        let tables = tables.into_iter().chain(of_bands.into_iter().flatten()).filter(|table| !table.rows.is_empty());
+        tables.map(without_control_codes).collect()
     }
+}
+
+/// A table whose names a terminal or a spreadsheet shows as they are.
+fn without_control_codes(mut table: Table) -> Table {
+    let cells = table.columns.iter_mut().chain(table.rows.iter_mut().flatten());
+    cells.chain([&mut table.title]).for_each(|text| *text = sanitized(text));
+    table
 }
 
 /// What is listed of a mark: its name, and its points with the texts beside them.

@@ -26,8 +26,14 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
 }
 
 /// Writes a figure to a file, in the format that its name says.
+///
+/// # Errors
+/// [`FileError::FigureWithoutNumbers`] where the numbers of a figure are asked for that shows none; else what hinders the writing.
 pub fn write_figure(figure: &Figure, width: ColumnWidth, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     let format = figure_format(path)?;
+    if format == FigureFormat::Csv && figure.tables().is_empty() {
+        return Err(FileError::FigureWithoutNumbers { path: path.to_owned(), title: figure.title.clone() });
+    }
     outputs.add(path, |file| write_as(figure, width, format, file))?;
     outputs.persist()
 }
@@ -39,5 +45,46 @@ pub fn write_as(figure: &Figure, width: ColumnWidth, format: FigureFormat, file:
         FigureFormat::Png => png::write_png(&figure.drawing(width), file),
         FigureFormat::Pdf => file.write_all(&pdf::pdf(&figure.drawing(width))?),
         FigureFormat::Csv => write_tables(file, &figure.tables()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Existing;
+    use crate::figure::{Axis, Color, Curve, Panel, Plot, Stroke};
+
+    /// A curve of a model whose name would turn a terminal red and hide what follows.
+    fn named_by_codes() -> Figure {
+        let name = "\u{1b}[31mred\u{9b}31m\u{202e}";
+        let curve = Curve::new(name, Stroke::solid(Color::INK, 1.0), [1.0, 2.0], [3.0, 4.0]).key(name);
+        let panel = Panel::new(Axis::linear("x"), Axis::linear("y")).with(curve);
+        Figure::new(name).caption(name).plot(Plot::new(name).panel(panel))
+    }
+
+    #[test]
+    fn codes_in_names_are_spelt_out_on_paper_and_among_the_numbers() {
+        for format in [FigureFormat::Svg, FigureFormat::Csv] {
+            let mut bytes = Vec::new();
+            write_as(&named_by_codes(), ColumnWidth::Single, format, &mut bytes).unwrap();
+            let text = String::from_utf8(bytes).unwrap();
+            assert!(text.contains("\\u{1b}[31mred\\u{9b}31m\\u{202e}"), "{format:?}");
+            assert!(!text.contains(|c: char| (c.is_control() && !"\r\n".contains(c)) || c == '\u{202e}'), "{format:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_figure_that_shows_none_are_refused_and_no_file_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("empty.csv");
+        let panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
+        let figure = Figure::new("Error of LON → Q").plot(Plot::new("").panel(panel));
+        let refusal =
+            write_figure(&figure, ColumnWidth::Single, &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap_err();
+        assert!(refusal.to_string().contains("\"Error of LON → Q\" shows no numbers"), "{refusal}");
+        assert!(!path.exists());
+        let drawn = folder.path().join("empty.svg");
+        write_figure(&figure, ColumnWidth::Single, &drawn, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
+        assert!(drawn.exists());
     }
 }

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
+use gdcm_core::message_text::sanitized;
 use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use skrifa::instance::{LocationRef, Size};
@@ -38,7 +39,7 @@ pub(super) fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     list.finish();
     resources.finish();
     entry.finish();
-    pdf.document_info(info).title(TextStr(&drawing.title)).creator(TextStr("gdcm"));
+    pdf.document_info(info).title(TextStr(&sanitized(&drawing.title))).creator(TextStr("gdcm"));
     Ok(pdf.finish())
 }
 

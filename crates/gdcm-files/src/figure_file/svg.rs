@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use gdcm_core::message_text::sanitized;
+
 use crate::figure::{Anchor, Area, Color, Drawing, FONTS, PT_PER_MM, Shape, Stroke, Text, width};
 
 /// Fonts to take where a reader does not have ours, about as wide.
@@ -16,7 +18,7 @@ pub(super) fn svg(drawing: &Drawing) -> String {
 /// The drawing as a part of a page in HTML, which knows the element without a name space. `name` begins the names that it refers
 /// to by: no two of a page may share it.
 pub(crate) fn inline_svg(drawing: &Drawing, name: &str) -> String {
-    let label = escaped(&drawing.title);
+    let label = escaped(&sanitized(&drawing.title));
     element(drawing, &format!("role=\"img\" aria-label=\"{label}\" {}", size_attributes(drawing)), name)
 }
 
@@ -34,7 +36,7 @@ fn element(drawing: &Drawing, head: &str, name: &str) -> String {
         "<svg {head} font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
         FONTS[0].0,
     ));
-    svg.line(&format!("<title>{}</title>", escaped(&drawing.title)));
+    svg.line(&format!("<title>{}</title>", escaped(&sanitized(&drawing.title))));
     svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, width, height), Some(Color::WHITE), None));
     drawing.shapes.iter().for_each(|shape| svg.shape(shape));
     svg.line("</svg>");
@@ -93,7 +95,7 @@ impl Svg<'_> {
         // As long as it was laid out, in whatever letters the reader has.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
-        let (color, words) = (hex(*color), escaped(words));
+        let (color, words) = (hex(*color), escaped(&sanitized(words)));
         self.line(&format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}{length}>{words}</text>"
         ));

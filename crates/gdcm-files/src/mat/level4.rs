@@ -111,7 +111,7 @@ impl Header {
             Meaning::Text => {
                 budget.take(re.len() as u64, 16, "")?;
                 let characters: Vec<u32> = re.iter().map(|&number| number as u32).collect();
-                Ok(Value::Text(rows(&characters, &shape, budget)?))
+                Ok(Value::Text(rows(&characters, &shape, "", budget)?))
             }
             Meaning::Sparse => self.sparse(&re, start, budget).map(Value::Array),
         }
@@ -147,7 +147,7 @@ impl Header {
             re: re.to_vec(),
             im: im.map(<[f64]>::to_vec),
         };
-        entries.filled(budget, damaged)
+        entries.filled("", budget, damaged)
     }
 }
 

@@ -9,6 +9,7 @@ use flate2::read::ZlibDecoder;
 
 use crate::mat::matrix::Arrays;
 use crate::mat::{self, FieldPath, Header};
+use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Length of the text and the numbers that a file begins with.
@@ -215,14 +216,6 @@ impl<'b> Cursor<'b> {
 }
 
 impl ByteOrder {
-    /// A whole number of 16 bits.
-    pub(super) fn u16(self, bytes: [u8; 2]) -> u16 {
-        match self {
-            ByteOrder::Little => u16::from_le_bytes(bytes),
-            ByteOrder::Big => u16::from_be_bytes(bytes),
-        }
-    }
-
     /// A whole number of 32 bits.
     pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
         match self {
@@ -247,21 +240,21 @@ impl ByteOrder {
 /// What kind of data an element holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DataKind {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-    I64,
-    U64,
-    Matrix,
-    Packed,
-    Utf8,
-    Utf16,
-    Utf32,
+    I8 = 1,
+    U8 = 2,
+    I16 = 3,
+    U16 = 4,
+    I32 = 5,
+    U32 = 6,
+    F32 = 7,
+    F64 = 9,
+    I64 = 12,
+    U64 = 13,
+    Matrix = 14,
+    Packed = 15,
+    Utf8 = 16,
+    Utf16 = 17,
+    Utf32 = 18,
 }
 
 /// A data element.
@@ -276,36 +269,44 @@ pub(super) struct Element<'b> {
 }
 
 impl DataKind {
+    const ALL: [Self; 15] = [
+        Self::I8,
+        Self::U8,
+        Self::I16,
+        Self::U16,
+        Self::I32,
+        Self::U32,
+        Self::F32,
+        Self::F64,
+        Self::I64,
+        Self::U64,
+        Self::Matrix,
+        Self::Packed,
+        Self::Utf8,
+        Self::Utf16,
+        Self::Utf32,
+    ];
+
     fn of(number: u32) -> Option<Self> {
-        Some(match number {
-            1 => DataKind::I8,
-            2 => DataKind::U8,
-            3 => DataKind::I16,
-            4 => DataKind::U16,
-            5 => DataKind::I32,
-            6 => DataKind::U32,
-            7 => DataKind::F32,
-            9 => DataKind::F64,
-            12 => DataKind::I64,
-            13 => DataKind::U64,
-            14 => DataKind::Matrix,
-            15 => DataKind::Packed,
-            16 => DataKind::Utf8,
-            17 => DataKind::Utf16,
-            18 => DataKind::Utf32,
-            _ => return None,
-        })
+        Self::ALL.into_iter().find(|kind| *kind as u32 == number)
     }
 
-    /// Bytes of one number; of matrices and packed data there is none.
-    pub(super) fn width(self) -> Option<usize> {
-        match self {
-            DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Some(1),
-            DataKind::I16 | DataKind::U16 | DataKind::Utf16 => Some(2),
-            DataKind::I32 | DataKind::U32 | DataKind::F32 | DataKind::Utf32 => Some(4),
-            DataKind::F64 | DataKind::I64 | DataKind::U64 => Some(8),
-            DataKind::Matrix | DataKind::Packed => None,
-        }
+    /// How its numbers are stored; of matrices and packed data there are none.
+    pub(super) fn stored(self, order: ByteOrder) -> Option<StoredNumber> {
+        let (class, size) = match self {
+            Self::I8 => (NumberClass::Signed, 1),
+            Self::I16 => (NumberClass::Signed, 2),
+            Self::I32 => (NumberClass::Signed, 4),
+            Self::I64 => (NumberClass::Signed, 8),
+            Self::U8 | Self::Utf8 => (NumberClass::Unsigned, 1),
+            Self::U16 | Self::Utf16 => (NumberClass::Unsigned, 2),
+            Self::U32 | Self::Utf32 => (NumberClass::Unsigned, 4),
+            Self::U64 => (NumberClass::Unsigned, 8),
+            Self::F32 => (NumberClass::Float, 4),
+            Self::F64 => (NumberClass::Float, 8),
+            Self::Matrix | Self::Packed => return None,
+        };
+        StoredNumber::new(class, size, order == ByteOrder::Big)
     }
 }
 
@@ -354,7 +355,8 @@ impl<'b> Element<'b> {
 
     /// Number of numbers in it.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
-        let width = self.kind.width().ok_or_else(|| self.data.damaged("a matrix where numbers should stand"))?;
+        let stored = self.kind.stored(self.data.order);
+        let width = stored.ok_or_else(|| self.data.damaged("a matrix where numbers should stand"))?.size();
         if !self.data.len().is_multiple_of(width) {
             return Err(self.data.damaged(format!("{} bytes of numbers of {width} bytes each", self.data.len())));
         }

@@ -2,7 +2,7 @@
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
-use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, behind, matrix};
+use crate::mat::level5::{Cursor, DataKind, Element, behind, matrix};
 use crate::mat::subsystem::{Reference, Subsystem};
 use crate::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
 use crate::variables::{
@@ -72,7 +72,7 @@ impl Arrays<'_> {
         let &[height, width] = header.shape.as_slice() else {
             return Err(start.damaged("a sparse array that is no matrix"));
         };
-        let mut rows = places(&Element::read(contents)?, self.budget)?;
+        let rows = places(&Element::read(contents)?, self.budget)?;
         let starts = places(&Element::read(contents)?, self.budget)?;
         let stored = starts.last().copied().unwrap_or(0);
         let mut part = || {
@@ -85,18 +85,10 @@ impl Arrays<'_> {
         };
         let re = part()?;
         let im = if header.complex { Some(part()?) } else { None };
-        let short = stored > rows.len() || stored > re.len() || im.as_ref().is_some_and(|im| stored > im.len());
-        if starts.len() != width.saturating_add(1) || starts.first() != Some(&0) || !starts.is_sorted() || short {
-            return Err(start.damaged("a sparse matrix whose columns do not fit its numbers"));
-        }
-        // Room for further numbers may have been left behind the last.
-        rows.truncate(stored);
         self.budget.take(stored as u64, 8, "")?;
-        let runs = starts.iter().zip(starts.iter().skip(1)).enumerate();
-        let columns = runs.flat_map(|(column, (&from, &to))| std::iter::repeat_n(column, to - from)).collect();
-        let kind = header.element_kind();
-        let entries = Entries { shape: [height, width], kind, rows, columns, re, im };
-        entries.filled(self.budget, || start.damaged("a number outside its sparse matrix"))
+        Entries::of_columns([height, width], header.element_kind(), rows, &starts, (re, im))
+            .ok_or_else(|| start.damaged("a sparse matrix whose columns do not fit its numbers"))?
+            .filled("", self.budget, || start.damaged("a number outside its sparse matrix"))
     }
 
     fn cell(
@@ -196,7 +188,8 @@ pub(super) fn numbers(
         return Err(element.data.damaged(format!("{found} numbers where there should be {count}")));
     }
     budget.take(count as u64, 8, "")?;
-    Ok(converted(element.kind, element.data.rest(), element.data.order))
+    let Some(stored) = element.kind.stored(element.data.order) else { return Ok(Vec::new()) };
+    Ok(element.data.rest().chunks_exact(stored.size()).map(|number| stored.decode(number)).collect())
 }
 
 /// All whole numbers of an element: sizes and places.
@@ -223,27 +216,6 @@ pub(super) fn long_words(element: &Element<'_>, budget: &ReadingBudget<'_>) -> R
     Ok(Some(element.data.rest().as_chunks().0.iter().map(|&bytes| order.u64(bytes)).collect()))
 }
 
-fn converted(kind: DataKind, bytes: &[u8], order: ByteOrder) -> Vec<f64> {
-    match kind {
-        DataKind::I8 => bytes.iter().map(|&byte| f64::from(byte as i8)).collect(),
-        DataKind::U8 | DataKind::Utf8 => bytes.iter().map(|&byte| f64::from(byte)).collect(),
-        DataKind::I16 => each(bytes, |two| f64::from(order.u16(two) as i16)),
-        DataKind::U16 | DataKind::Utf16 => each(bytes, |two| f64::from(order.u16(two))),
-        DataKind::I32 => each(bytes, |four| f64::from(order.u32(four) as i32)),
-        DataKind::U32 | DataKind::Utf32 => each(bytes, |four| f64::from(order.u32(four))),
-        DataKind::F32 => each(bytes, |four| f64::from(f32::from_bits(order.u32(four)))),
-        DataKind::F64 => each(bytes, |eight| f64::from_bits(order.u64(eight))),
-        // The nearest number: beyond 2^53 not every whole number has one of its own.
-        DataKind::I64 => each(bytes, |eight| order.u64(eight) as i64 as f64),
-        DataKind::U64 => each(bytes, |eight| order.u64(eight) as f64),
-        DataKind::Matrix | DataKind::Packed => Vec::new(),
-    }
-}
-
-fn each<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f64) -> Vec<f64> {
-    bytes.as_chunks::<N>().0.iter().map(|&chunk| number(chunk)).collect()
-}
-
 // Arrays of characters.
 
 /// The rows of an array of characters, stored as text or as numbers of characters.
@@ -263,15 +235,16 @@ pub(super) fn text(
         let found = characters.len();
         return Err(element.data.damaged(format!("{found} characters where there should be {wanted}")));
     }
-    rows(&characters, shape, budget)
+    rows(&characters, shape, "", budget)
 }
 
 /// The texts in the rows of an array of characters, of which there are as many as the shape says.
 ///
 /// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
-pub(super) fn rows(
+pub(crate) fn rows(
     characters: &[u32],
     shape: &[usize],
+    variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
     let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
@@ -281,7 +254,9 @@ pub(super) fn rows(
     }
     let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
     let texts = count(&shape);
-    budget.take(texts as u64, size_of::<String>() as u64, "")?;
+    budget.take(texts as u64, size_of::<String>() as u64, variable)?;
+    // A unit of UTF-16 takes up to three bytes.
+    budget.take(characters.len() as u64, 3, variable)?;
     let page = height.saturating_mul(length);
     let row = |text: usize| {
         let first = (text / height).saturating_mul(page).saturating_add(text % height);
@@ -328,7 +303,7 @@ fn of_utf8(bytes: &[u8], wanted: usize) -> Vec<u32> {
 // Matrices of which only the numbers other than zero are stored, filled up.
 
 /// The numbers other than zero, each with its place.
-pub(super) struct Entries {
+pub(crate) struct Entries {
     /// Number of rows and columns.
     pub(super) shape: [usize; 2],
     /// What the numbers are.
@@ -344,17 +319,38 @@ pub(super) struct Entries {
 }
 
 impl Entries {
+    /// Those of numbers that stand column by column, `starts` being where each column begins among them and where the last ends;
+    /// nothing where that does not fit them. Room for further numbers may have been left behind the last.
+    pub(crate) fn of_columns(
+        shape: [usize; 2],
+        kind: ElementKind,
+        mut rows: Vec<usize>,
+        starts: &[usize],
+        (re, im): (Vec<f64>, Option<Vec<f64>>),
+    ) -> Option<Self> {
+        let stored = *starts.last()?;
+        let short = stored > rows.len() || stored > re.len() || im.as_ref().is_some_and(|im| stored > im.len());
+        if starts.len() != shape[1].checked_add(1)? || starts[0] != 0 || !starts.is_sorted() || short {
+            return None;
+        }
+        rows.truncate(stored);
+        let runs = starts.windows(2).enumerate();
+        let columns = runs.flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0])).collect();
+        Some(Self { shape, kind, rows, columns, re, im })
+    }
+
     /// The whole matrix; what two entries say of the same place is added.
     ///
     /// `outside` is the fault that a number lies outside the matrix.
-    pub(super) fn filled(
+    pub(crate) fn filled(
         &self,
+        variable: &str,
         budget: &ReadingBudget<'_>,
         outside: impl Fn() -> VariableFault,
     ) -> Result<Array, VariableFault> {
         let [height, width] = self.shape;
         let count = (height as u64).saturating_mul(width as u64);
-        budget.take(count, if self.im.is_some() { 16 } else { 8 }, "")?;
+        budget.take(count, if self.im.is_some() { 16 } else { 8 }, variable)?;
         let fill = |values: &[f64]| {
             let mut filled = vec![0.0; height.saturating_mul(width)];
             for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
@@ -507,7 +503,7 @@ mod matrix_tests {
 
 #[cfg(test)]
 mod numbers_tests {
-    use crate::mat::level5::Cursor;
+    use crate::mat::level5::{ByteOrder, Cursor};
 
     use super::*;
 
@@ -586,15 +582,15 @@ mod sparse_tests {
     #[test]
     fn what_is_not_stored_is_zero() {
         let budget = ReadingBudget::new(1000);
-        let array = entries([2, 2]).filled(&budget, || VariableFault::Stopped).unwrap();
+        let array = entries([2, 2]).filled("", &budget, || VariableFault::Stopped).unwrap();
         assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
     }
 
     #[test]
     fn places_outside_and_sizes_beyond_the_limit_are_refused() {
         let budget = ReadingBudget::new(1000);
-        assert_eq!(entries([1, 2]).filled(&budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
-        let large = entries([usize::MAX, 1]).filled(&budget, || VariableFault::Stopped);
+        assert_eq!(entries([1, 2]).filled("", &budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
+        let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
         assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }
 }

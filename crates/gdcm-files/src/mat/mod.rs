@@ -17,7 +17,8 @@ use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked}
 use crate::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
 
-pub use crate::mat::subsystem::Subsystem;
+pub(crate) use crate::mat::matrix::{Entries, rows};
+pub(crate) use crate::mat::subsystem::Subsystem;
 pub use crate::mat::writer::{write, write_packed};
 
 /// What every HDF5 file, or what follows MATLAB's header in one, begins with.

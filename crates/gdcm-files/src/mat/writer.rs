@@ -7,6 +7,7 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use crate::mat::level5::DataKind as Kind;
 use crate::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault};
 
 /// What the file begins with, filled up with blanks: MATLAB looks at the first words.
@@ -61,21 +62,6 @@ fn packed(plain: Vec<u8>) -> Vec<u8> {
 }
 
 // Elements of a file: what kind of data follows, how much, and the data.
-
-/// What kind of data an element holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    I8 = 1,
-    U8 = 2,
-    U16 = 4,
-    I32 = 5,
-    U32 = 6,
-    F64 = 9,
-    I64 = 12,
-    Matrix = 14,
-    Packed = 15,
-    Utf8 = 16,
-}
 
 /// Adds an element, filled up to eight bytes. Up to four bytes stand in the tag itself, as MATLAB insists on for some names.
 pub(super) fn element(bytes: &mut Vec<u8>, kind: Kind, data: &[u8]) {

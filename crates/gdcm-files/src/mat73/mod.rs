@@ -25,13 +25,11 @@ use hdf5_pure::{
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::mat::{Subsystem, is_hdf5};
+use crate::mat::is_hdf5;
 use crate::mat73::dataset::{Elements, Order};
-use crate::mat73::values::{Objects, Sparse, empty, records, rows, strings};
+use crate::mat73::values::{Objects, empty, records, rows, sparse, strings};
 use crate::octave;
 use crate::variables::{self, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault};
-
-pub use crate::mat73::values::{FileWrapper, ObjectDecoder};
 
 /// MATLAB 7.3 and HDF5.
 pub(crate) struct Hdf5;
@@ -50,31 +48,16 @@ impl Importer for Hdf5 {
     }
 
     fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
-        // The objects lie in it as in the files of the versions before.
-        let decoder = |wrapper: FileWrapper| -> Result<Box<ObjectDecoder<'static>>, VariableFault> {
-            let subsystem = Subsystem::new(wrapper.cells, budget)?.with_long_words(wrapper.long_words);
-            Ok(Box::new(move |reference: &[u32], variable: &str, budget: &ReadingBudget<'_>| {
-                subsystem.object(reference, variable, budget)
-            }))
-        };
-        let read = read_with_objects(bytes, budget, decoder);
+        let read = open(bytes, budget).and_then(|file| {
+            let objects = Objects::read(&file, budget)?;
+            Reader { budget, objects: &objects }.variables(&file.root())
+        });
         // Where the library was stopped it says that the file cannot be read.
         Contents::variables(
             budget.work(0, "").and(read).and_then(|variables| octave::unwrapped(variables, budget)),
             path,
         )
     }
-}
-
-/// Reads all variables, and objects of MATLAB's classes by `decoder`, which is made of the part of the file in which they lie.
-pub fn read_with_objects<'d>(
-    bytes: &[u8],
-    budget: &ReadingBudget<'_>,
-    decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
-) -> Result<Vec<Variable>, VariableFault> {
-    let opened = Opened::new(bytes, budget)?;
-    let objects = Objects::read(&opened, budget, decoder)?;
-    Reader { budget, objects: &objects }.variables(&opened.root())
 }
 
 // Values as datasets and groups hold them, one within another.
@@ -87,7 +70,7 @@ const HEADER: u64 = 1024;
 /// Reads values within the limits of a budget.
 struct Reader<'r> {
     budget: &'r ReadingBudget<'r>,
-    objects: &'r Objects<'r>,
+    objects: &'r Objects,
 }
 
 impl Reader<'_> {
@@ -129,7 +112,7 @@ impl Reader<'_> {
         if marks.empty {
             return empty(&marks, &elements, path, self.budget);
         }
-        if marks.decode == Decode::FunctionHandle {
+        if marks.decode == FUNCTION_HANDLE {
             return Ok(unread("function_handle", "functions are not data"));
         }
         if is_reference(&elements.datatype) {
@@ -137,7 +120,7 @@ impl Reader<'_> {
         }
         if let Some(mut array) = elements.numbers(path, self.budget)? {
             return match (marks.decode, marks.class()) {
-                (Decode::Object, class) => self.objects.value(class, array, path, self.budget),
+                (OBJECT, class) => self.objects.value(class, array, path, self.budget),
                 (_, "char") => Ok(Value::Text(rows(&array, path, self.budget)?)),
                 (_, "logical") => {
                     array.kind = ElementKind::Logical;
@@ -183,36 +166,22 @@ fn unread(class: &str, why: &str) -> Value {
     Value::Opaque { class: class.to_owned(), why: why.to_owned() }
 }
 
-// An HDF5 file that is open.
-
-/// An HDF5 file in memory, found to be whole.
-struct Opened {
-    file: File,
-}
-
-impl Opened {
-    /// Opens a file, which is copied; a user block such as MATLAB's may stand before it.
-    fn new(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
-        if !is_hdf5_bytes(bytes) {
-            let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
-            return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
-        }
-        budget.take(bytes.len() as u64, 1, "")?;
-        // What a cache gave out would not count.
-        let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
-        let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
-        let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
-        // Chunks at the end may be missing without any structure reaching beyond it.
-        if file.superblock().eof_address > bytes.len() as u64 {
-            return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
-        }
-        Ok(Self { file })
+/// Opens a file, which is copied, and finds it whole; a user block such as MATLAB's may stand before it.
+fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
+    if !is_hdf5_bytes(bytes) {
+        let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
+        return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
     }
-
-    /// The group in which everything lies.
-    fn root(&self) -> Group {
-        self.file.root()
+    budget.take(bytes.len() as u64, 1, "")?;
+    // What a cache gave out would not count.
+    let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
+    let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
+    let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
+    // Chunks at the end may be missing without any structure reaching beyond it.
+    if file.superblock().eof_address > bytes.len() as u64 {
+        return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
     }
+    Ok(file)
 }
 
 // What the HDF5 library says, in the words of this program.
@@ -300,21 +269,12 @@ impl Source for Rationed {
 
 // The attributes with which MATLAB says what a group or dataset is.
 
-/// How the value of `MATLAB_object_decode` calls a function handle.
+/// What `MATLAB_object_decode` says of a function handle.
 const FUNCTION_HANDLE: u64 = 1;
 /// An object of a class made with `@` folders, stored as a struct.
 const OLD_OBJECT: u64 = 2;
 /// An object of a class made with `classdef`, stored as a reference.
 const OBJECT: u64 = 3;
-
-/// What stands for a value, by its attributes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Decode {
-    Plain,
-    FunctionHandle,
-    OldObject,
-    Object,
-}
 
 /// MATLAB's attributes of a group or dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -327,7 +287,8 @@ struct MatlabAttributes {
     sparse: Option<u64>,
     /// Names of a struct's fields in their order (`MATLAB_fields`).
     fields: Vec<String>,
-    decode: Decode,
+    /// What stands for a value (`MATLAB_object_decode`); 0 where it is the value.
+    decode: u64,
 }
 
 impl MatlabAttributes {
@@ -341,12 +302,7 @@ impl MatlabAttributes {
                 || attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
             sparse: number("MATLAB_sparse"),
             fields: fields.unwrap_or_default().to_vec(),
-            decode: match number("MATLAB_object_decode") {
-                Some(FUNCTION_HANDLE) => Decode::FunctionHandle,
-                Some(OLD_OBJECT) => Decode::OldObject,
-                Some(OBJECT) => Decode::Object,
-                _ => Decode::Plain,
-            },
+            decode: number("MATLAB_object_decode").unwrap_or(0),
         }
     }
 
@@ -381,17 +337,17 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
     let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
     let mut members = members(group, path, reader.budget)?;
     if let Some(rows) = marks.sparse {
-        let sparse = Sparse { rows, marks: &marks, members: &members, path, budget: reader.budget };
-        return Ok(Value::Array(sparse.filled()?));
+        return Ok(Value::Array(sparse(rows, &marks, &members, path, reader.budget)?));
     }
     match (marks.decode, marks.class()) {
-        (Decode::FunctionHandle, _) | (_, "function_handle") => {
+        (FUNCTION_HANDLE, _) | (_, "function_handle") => {
             return Ok(unread("function_handle", "functions are not data"));
         }
-        (Decode::Object, class) => return Ok(unread(class, "enumerations are not read")),
+        (OBJECT, class) => return Ok(unread(class, "enumerations are not read")),
         _ => {}
     }
     // MATLAB says the order of fields only where it is not that of the names.
+    reader.budget.work((members.len() as u64).saturating_mul(marks.fields.len() as u64), path)?;
     let order = |name: &str| marks.fields.iter().position(|field| field == name).unwrap_or(usize::MAX);
     members.sort_by_cached_key(|(name, _)| order(name));
     let records = if is_array(&marks, &members, path)? {
@@ -405,7 +361,7 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
         StructArray { shape: vec![1, 1], fields }
     };
     Ok(match marks.decode {
-        Decode::OldObject => Value::Object(variables::Object { class: marks.class().to_owned(), records }),
+        OLD_OBJECT => Value::Object(variables::Object { class: marks.class().to_owned(), records }),
         _ => Value::Struct(records),
     })
 }
@@ -470,8 +426,8 @@ mod mat73_tests {
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
     /// [`Value::Opaque`](crate::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-        let opened = Opened::new(bytes, budget)?;
-        Reader { budget, objects: &Objects::Opaque("objects of classes are not read") }.variables(&opened.root())
+        let objects = Objects::Unread("objects of classes are not read".to_owned());
+        Reader { budget, objects: &objects }.variables(&open(bytes, budget)?.root())
     }
 
     fn file(name: &str) -> Vec<u8> {
@@ -579,30 +535,28 @@ mod mat73_tests {
     }
 
     #[test]
-    fn objects_are_given_to_their_decoder_with_the_part_in_which_they_lie() {
-        let (budget, bytes) = (ReadingBudget::new(1 << 24), file("objects.mat"));
-        let variables = read_with_objects(&bytes, &budget, |wrapper| {
-            assert_eq!(wrapper.cells.len(), 3);
-            assert!(matches!(&wrapper.cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
-            assert_eq!(wrapper.long_words, [(2, vec![u64::MAX])]);
-            Ok(Box::new(|words: &[u32], name: &str, _: &ReadingBudget<'_>| {
-                assert_eq!((words, name), ([0xdd00_0000, 2, 1, 1, 1, 1].as_slice(), "sys"));
-                Ok(number(42.0))
-            }))
-        });
-        let variables = variables.unwrap();
-        assert_eq!((variables.len(), value(&variables, "sys")), (2, number(42.0)));
+    fn the_part_in_which_objects_lie_is_read_with_whole_numbers_to_the_last_digit() {
+        let budget = ReadingBudget::new(1 << 24);
+        let opened = open(&file("objects.mat"), &budget).unwrap();
+        let dataset = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")).unwrap();
+        let (cells, long_words) = values::wrapper(&dataset, &budget).unwrap();
+        assert_eq!(cells.len(), 3);
+        assert!(matches!(&cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
+        assert_eq!(long_words, [(2, vec![u64::MAX])]);
+        let variables = Reader { budget: &budget, objects: &Objects::References }.variables(&opened.root()).unwrap();
+        assert_eq!(array(&variables, "sys").re, [f64::from(0xdd00_0000_u32), 2.0, 1.0, 1.0, 1.0, 1.0]);
         let opaque = value(&read_file("objects.mat").unwrap(), "sys");
         assert!(matches!(opaque, Value::Opaque { class, .. } if class == "ss"));
     }
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        let (budget, bytes) = (ReadingBudget::new(1 << 24), file("objects.mat"));
-        let fault = || VariableFault::TooDeep { variable: String::new() };
-        let variables = read_with_objects(&bytes, &budget, |_| Err(fault())).unwrap();
-        assert_eq!(value(&variables, "before"), number(1.0));
-        assert!(matches!(value(&variables, "sys"), Value::Opaque { why, .. } if why == fault().to_string()));
+        // The directory of this file is cut off behind its version.
+        let read = Hdf5.read(&file("objects.mat"), Path::new("objects.mat"), &ReadingBudget::new(1 << 24)).unwrap();
+        let Contents::Variables { variables, .. } = read else { panic!("variables") };
+        assert_eq!((variables.len(), value(&variables, "before")), (2, number(1.0)));
+        let sys = value(&variables, "sys");
+        assert!(matches!(&sys, Value::Opaque { why, .. } if why.contains("cut off")), "{sys:?}");
     }
 
     #[test]

@@ -1,35 +1,18 @@
 //! Texts: MATLAB's characters, and strings of HDF5.
 
-use hdf5_pure::{CompoundMember, Dataset, Datatype, Object, StringPadding, VlenStringReadOptions};
+use hdf5_pure::{CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions};
 
+use crate::mat::{self, Entries, Subsystem};
 use crate::mat73::dataset::{Elements, NumberType, Order};
-use crate::mat73::{MatlabAttributes, Opened, Reader, damaged, fault};
+use crate::mat73::{MatlabAttributes, Reader, damaged, fault};
 use crate::strides::count;
 use crate::variables::{Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
-/// The texts in the rows of an array of characters' numbers (UTF-16), as many as the shape says.
-///
-/// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
+/// The texts in the rows of an array of characters' numbers (UTF-16).
 pub(super) fn rows(codes: &Array, path: &str, budget: &ReadingBudget<'_>) -> Result<TextArray, VariableFault> {
-    let (height, length) = (codes.shape.first().copied().unwrap_or(1), codes.shape.get(1).copied().unwrap_or(1));
-    if codes.is_empty() && height <= 1 {
-        return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
-    }
-    let mut shape = codes.shape.clone();
-    if let Some(length) = shape.get_mut(1) {
-        *length = 1;
-    }
-    let texts = count(&shape).ok_or_else(|| damaged(path, "there are more rows than can be counted"))?;
-    budget.take(texts as u64, size_of::<String>() as u64, path)?;
-    // A unit of UTF-16 takes up to three bytes.
-    budget.take(codes.len() as u64, 3, path)?;
-    let row = |text: usize| {
-        let first = (text / height).saturating_mul(height.saturating_mul(length)) + text % height;
-        let places = (0..length).map(|column| first.saturating_add(column.saturating_mul(height)));
-        let units = places.filter_map(|place| codes.re.get(place)).map(|&code| code as u16);
-        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
-    };
-    Ok(TextArray { shape, texts: (0..texts).map(row).collect() })
+    budget.take(codes.len() as u64, size_of::<u32>() as u64, path)?;
+    let units: Vec<u32> = codes.re.iter().map(|&code| u32::from(code as u16)).collect();
+    mat::rows(&units, &codes.shape, path, budget)
 }
 
 /// A text of fixed length without what fills it up.
@@ -160,107 +143,68 @@ fn value(
 
 // Matrices of which only the numbers other than zero are stored (`MATLAB_sparse`): by columns, compressed.
 
-/// The members of a group that is a sparse matrix, and its marks.
-pub(super) struct Sparse<'s> {
-    pub(super) rows: u64,
-    pub(super) marks: &'s MatlabAttributes,
-    pub(super) members: &'s [(String, Object)],
-    pub(super) path: &'s str,
-    pub(super) budget: &'s ReadingBudget<'s>,
-}
-
-impl Sparse<'_> {
-    /// The matrix, filled up with zeros.
-    pub(super) fn filled(&self) -> Result<Array, VariableFault> {
-        let wrong = || damaged(self.path, "the sparse matrix contradicts itself");
-        let starts = self.indices("jc")?.ok_or_else(wrong)?;
-        let (indices, data) = (self.indices("ir")?.unwrap_or_default(), self.data()?);
-        let columns = starts.len().checked_sub(1).ok_or_else(wrong)?;
-        let cells = self.rows.saturating_mul(columns as u64);
-        self.budget.take(cells, if data.im.is_some() { 16 } else { 8 }, self.path)?;
-        let (cells, rows) =
-            (usize::try_from(cells).map_err(|_| wrong())?, usize::try_from(self.rows).map_err(|_| wrong())?);
-        let (mut re, mut im) = (vec![0.0; cells], data.im.as_ref().map(|_| vec![0.0; cells]));
-        for (column, bounds) in starts.windows(2).enumerate() {
-            let [first, end] = [bounds[0], bounds[1]];
-            if first > end || end > indices.len() || end > data.re.len() {
-                return Err(wrong());
-            }
-            for place in first..end {
-                let cell = column * rows + Some(indices[place]).filter(|&row| row < rows).ok_or_else(wrong)?;
-                re[cell] = data.re[place];
-                if let (Some(im), Some(data)) = (&mut im, &data.im) {
-                    im[cell] = data[place];
-                }
-            }
-        }
-        let kind = if self.marks.class() == "logical" { ElementKind::Logical } else { data.kind };
-        Ok(Array { shape: vec![rows, columns], kind, re, im })
-    }
-
-    fn member(&self, name: &str) -> Option<&Dataset> {
-        self.members.iter().find_map(|(member, object)| match object {
-            Object::Dataset(dataset) if member == name => Some(dataset.as_ref()),
-            _ => None,
-        })
-    }
-
-    fn indices(&self, name: &str) -> Result<Option<Vec<usize>>, VariableFault> {
-        let Some(dataset) = self.member(name) else { return Ok(None) };
-        let words = Elements::read(dataset, Order::Columns, self.path, self.budget)?.words(self.path, self.budget)?;
-        let words = words.ok_or_else(|| damaged(self.path, "the places of a sparse matrix are no whole numbers"))?;
+/// The matrix of a group's members, filled up with zeros.
+pub(super) fn sparse(
+    height: u64,
+    marks: &MatlabAttributes,
+    members: &[(String, Object)],
+    path: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Array, VariableFault> {
+    let wrong = || damaged(path, "the sparse matrix contradicts itself");
+    let member = |name: &str| {
+        let found = members.iter().find(|(member, _)| member == name);
+        let Some((_, Object::Dataset(dataset))) = found else { return Ok(None) };
+        Elements::read(dataset, Order::Columns, path, budget).map(Some)
+    };
+    let places = |name: &str| -> Result<Option<Vec<usize>>, VariableFault> {
+        let Some(elements) = member(name)? else { return Ok(None) };
+        let words = elements.words(path, budget)?;
+        let words = words.ok_or_else(|| damaged(path, "the places of a sparse matrix are no whole numbers"))?;
         Ok(Some(words.into_iter().map(|word| usize::try_from(word).unwrap_or(usize::MAX)).collect()))
-    }
-
-    /// The numbers; there is no dataset where there are none.
-    fn data(&self) -> Result<Array, VariableFault> {
-        let Some(dataset) = self.member("data") else { return Ok(Array::matrix(0, 0, Vec::new())) };
-        let numbers =
-            Elements::read(dataset, Order::Columns, self.path, self.budget)?.numbers(self.path, self.budget)?;
-        numbers.ok_or_else(|| damaged(self.path, "the elements of a sparse matrix are no numbers"))
-    }
+    };
+    let starts = places("jc")?.ok_or_else(wrong)?;
+    let rows = places("ir")?.unwrap_or_default();
+    // There is no dataset where there are no numbers.
+    let data = match member("data")? {
+        None => Array::matrix(0, 0, Vec::new()),
+        Some(elements) => elements
+            .numbers(path, budget)?
+            .ok_or_else(|| damaged(path, "the elements of a sparse matrix are no numbers"))?,
+    };
+    let shape = [usize::try_from(height).map_err(|_| wrong())?, starts.len().checked_sub(1).ok_or_else(wrong)?];
+    let kind = if marks.class() == "logical" { ElementKind::Logical } else { data.kind };
+    budget.take(rows.len() as u64, 8, path)?;
+    let entries = Entries::of_columns(shape, kind, rows, &starts, (data.re, data.im)).ok_or_else(wrong)?;
+    entries.filled(path, budget, wrong)
 }
 
-// Objects of MATLAB's classes, which lie in a part of the file of their own.
-
-/// The part of the file in which the objects lie (`#subsystem#/MCOS`).
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileWrapper {
-    /// The cells, the first of which are the bytes of the directory.
-    pub cells: Vec<Value>,
-    /// The cells of whole numbers of 64 bits, to the last digit, with the number of the cell, counted from 0.
-    pub long_words: Vec<(usize, Vec<u64>)>,
-}
-
-/// Gives the value of a reference such as `[0xDD000000, dimensions, …, class]`, for a variable of this name.
-pub type ObjectDecoder<'d> = dyn Fn(&[u32], &str, &ReadingBudget<'_>) -> Result<Value, VariableFault> + 'd;
+// Objects of MATLAB's classes, which lie in a part of the file of their own (`#subsystem#/MCOS`), as in the files of the versions
+// before.
 
 /// What becomes of references to objects.
-pub(super) enum Objects<'d> {
-    /// They stay the whole numbers that they are: within the part that the decoder itself reads.
+pub(super) enum Objects {
+    /// They stay the whole numbers that they are: within the part that holds the objects itself.
     References,
     /// They cannot be read, and why.
-    Opaque(&'static str),
-    /// As before, in the words of a fault.
-    Faulty(String),
-    Decoded(Box<ObjectDecoder<'d>>),
+    Unread(String),
+    /// They are looked up.
+    Read(Subsystem),
 }
 
-impl<'d> Objects<'d> {
-    /// Reads the part of the objects, where there is one, and makes the decoder of it.
-    pub(super) fn read(
-        opened: &Opened,
-        budget: &ReadingBudget<'_>,
-        decoder: impl FnOnce(FileWrapper) -> Result<Box<ObjectDecoder<'d>>, VariableFault>,
-    ) -> Result<Self, VariableFault> {
-        let Ok(dataset) = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
-            return Ok(Self::Opaque("the file has no part in which objects lie"));
+impl Objects {
+    /// Reads the part of the objects, where there is one.
+    pub(super) fn read(file: &File, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
+        let Ok(dataset) = file.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
+            return Ok(Self::Unread("the file has no part in which objects lie".to_owned()));
         };
-        match wrapper(&dataset, budget).and_then(decoder) {
-            Ok(decoder) => Ok(Self::Decoded(decoder)),
+        let subsystem = wrapper(&dataset, budget)
+            .and_then(|(cells, long_words)| Ok(Subsystem::new(cells, budget)?.with_long_words(long_words)));
+        match subsystem {
+            Ok(subsystem) => Ok(Self::Read(subsystem)),
             Err(fault) if fault.is_of_the_budget() => Err(fault),
             // The other variables can be read all the same.
-            Err(fault) => Ok(Self::Faulty(fault.to_string())),
+            Err(fault) => Ok(Self::Unread(fault.to_string())),
         }
     }
 
@@ -275,12 +219,11 @@ impl<'d> Objects<'d> {
         let opaque = |why: &str| Ok(Value::Opaque { class: class.to_owned(), why: why.to_owned() });
         match self {
             Self::References => Ok(Value::Array(reference)),
-            Self::Opaque(why) => opaque(why),
-            Self::Faulty(why) => opaque(why),
-            Self::Decoded(decoder) => {
+            Self::Unread(why) => opaque(why),
+            Self::Read(subsystem) => {
                 let word = |&number: &f64| (0.0..=f64::from(u32::MAX)).contains(&number).then_some(number as u32);
                 match reference.re.iter().map(word).collect::<Option<Vec<u32>>>() {
-                    Some(words) => decoder(&words, path, budget),
+                    Some(words) => subsystem.object(&words, path, budget),
                     None => opaque("what refers to it is damaged"),
                 }
             }
@@ -288,22 +231,22 @@ impl<'d> Objects<'d> {
     }
 }
 
-fn wrapper(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<FileWrapper, VariableFault> {
+/// The cells that hold the objects, the first of which are the bytes of their directory; and to the last digit those of whole numbers
+/// of 64 bits, each with the number of its cell, counted from 0.
+pub(super) fn wrapper(
+    dataset: &Dataset,
+    budget: &ReadingBudget<'_>,
+) -> Result<(Vec<Value>, Vec<(usize, Vec<u64>)>), VariableFault> {
     let reader = Reader { budget, objects: &Objects::References };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
-        if let Object::Dataset(dataset) = object {
-            long_words.extend(words(dataset, budget)?.map(|words| (index, words)));
+        if let Object::Dataset(dataset) = object
+            && dataset.element_size().map_err(|error| fault(&error, ""))? == 8
+        {
+            let words = Elements::read(dataset, Order::Columns, "", budget)?.words("", budget)?;
+            long_words.extend(words.map(|words| (index, words)));
         }
         cells.push(reader.value(object, "", 0)?);
     }
-    Ok(FileWrapper { cells, long_words })
-}
-
-/// What a dataset of whole numbers of 64 bits holds.
-fn words(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
-    if dataset.element_size().map_err(|error| fault(&error, ""))? != 8 {
-        return Ok(None);
-    }
-    Elements::read(dataset, Order::Columns, "", budget)?.words("", budget)
+    Ok((cells, long_words))
 }

@@ -17,9 +17,9 @@ use crate::recognise::state_space::{is_state_space, is_transfer_function, state_
 use crate::variables::{Array, ReadingBudget, StructArray, Value, Variable, VariableFault};
 
 /// Deepest nesting that is searched.
-const DEEPEST: usize = 16;
+pub(crate) const DEEPEST: usize = 16;
 /// Most models or records of one file.
-const MOST_FOUND: usize = 10_000;
+pub(crate) const MOST_FOUND: usize = 10_000;
 /// Most variables that are told where nothing was found.
 const MOST_TOLD: usize = 20;
 

@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::collections::HashMap;
 
-use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, folded_name};
+use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, direction_of, folded_name};
 use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
@@ -189,6 +189,7 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
         if let Some((name, unit)) = text.strip_suffix(close).and_then(|text| text.split_once(open))
             && !name.trim().is_empty()
             && !unit.trim().is_empty()
+            && direction_of(unit).is_none()
         {
             return ChannelLabel { name: Some(name.trim().to_owned()), unit: Some(unit.trim().to_owned()) };
         }
@@ -323,6 +324,10 @@ pub(super) fn page_of(name: &str, array: &Array, page: usize, pages_first: bool)
     }
     let (start, step) = if array.shape.len() == 3 && pages_first { (page, pages) } else { (page * rows * columns, 1) };
     let values: Vec<f64> = array.re.iter().skip(start).step_by(step.max(1)).take(rows * columns).copied().collect();
+    // There are sides enough and no numbers where one behind them is 0.
+    if values.len() != rows * columns {
+        return Err(format!("{name}: expected a matrix, found an array without numbers"));
+    }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
         let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
         return Err(format!(

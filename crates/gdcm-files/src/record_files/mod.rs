@@ -24,7 +24,7 @@ use crate::text::{NumberedText, TextTable, numbered_words, read_table, sections}
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Most records of one file.
-const MOST_RECORDS: usize = 1000;
+pub(crate) const MOST_RECORDS: usize = 1000;
 /// What was found in files of records.
 #[derive(Clone, Debug, Default)]
 pub struct FoundRecords {
@@ -47,11 +47,10 @@ pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<
     Ok(FoundRecords { files, ..found })
 }
 
-/// The records in the bytes of a file of this name, in no more than `most` bytes of memory for its columns.
-pub fn records_of_bytes(bytes: &[u8], name: &str, most: u64) -> Result<FoundRecords, FileError> {
-    let budget = ReadingBudget::new(most);
+/// The records in the bytes of a file of this name, within a budget.
+pub fn records_of_bytes(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<FoundRecords, FileError> {
     let mut found = FoundRecords { files: 1, ..FoundRecords::default() };
-    found.take(import_bytes(bytes, Path::new(name), name, &budget)?, &budget)?;
+    found.take(import_bytes(bytes, Path::new(name), name, budget)?, budget)?;
     Ok(found)
 }
 
@@ -232,7 +231,7 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
         return Ok(Vec::new());
     }
     let patterns = standard_patterns();
-    let found = records_of_bytes(ARCHIVE, NAME, MOST_MEMORY)?;
+    let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::new(MOST_MEMORY))?;
     let is_of = |table: &RecordTable| RecordGuess::of(&table.name, &patterns).condition == Some(condition);
     Ok(found.tables.into_iter().filter(is_of).collect())
 }

@@ -9,7 +9,7 @@ use gdcm_core::records::{RecordChannels, RecordLayout, TimeWish};
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
 fn read(name: &str) -> FoundRecords {
-    records_of_bytes(&std::fs::read(format!("{FOLDER}{name}")).unwrap(), name, 1 << 24).unwrap()
+    records_of_bytes(&std::fs::read(format!("{FOLDER}{name}")).unwrap(), name, &ReadingBudget::new(1 << 24)).unwrap()
 }
 
 fn channels() -> RecordChannels {
@@ -149,7 +149,7 @@ fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
         .map(|k| row(k, "LON sweep"))
         .chain((0..60).map(|k| row(k, "LAT sweep")))
         .fold(head, |log, row| log + &row);
-    let found = records_of_bytes(log.as_bytes(), "log.csv", 1 << 24).unwrap();
+    let found = records_of_bytes(log.as_bytes(), "log.csv", &ReadingBudget::new(1 << 24)).unwrap();
     let names: Vec<&str> = found.tables.iter().map(|table| table.name.as_str()).collect();
     assert_eq!(names, ["log, manoeuvre 1", "log, manoeuvre 2"]);
     assert!(found.tables[1].notes.iter().any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")), "{found:?}");
@@ -166,7 +166,7 @@ fn a_log_that_is_begun_anew_with_other_columns_is_two_tables() {
         format!("{columns} |\n") + &(0..rows).map(row).collect::<String>()
     };
     let text = log("time,s | P,rad/s", 3) + "\n" + &log("time,s | P,rad/s | Q,rad/s", 50);
-    let found = records_of_bytes(text.as_bytes(), "log.txt", 1 << 24).unwrap();
+    let found = records_of_bytes(text.as_bytes(), "log.txt", &ReadingBudget::new(1 << 24)).unwrap();
     assert_eq!((found.tables.len(), found.tables[0].rows(), found.tables[0].columns.len()), (1, 50, 3));
     assert_eq!(found.tables[0].notes[0], "one of 2 tables in the file, from line 6");
     assert_eq!(found.tables[0].source.variable.as_deref(), Some("table 2"));
@@ -301,8 +301,8 @@ fn damaged_files_are_faults_and_never_a_panic() {
         for at in (0..whole.len()).step_by(step) {
             let mut bytes = whole.clone();
             bytes[at] ^= 0x15;
-            let _ = records_of_bytes(&bytes, name, 1 << 22);
-            let _ = records_of_bytes(&whole[..at], name, 1 << 22);
+            let _ = records_of_bytes(&bytes, name, &ReadingBudget::new(1 << 22));
+            let _ = records_of_bytes(&whole[..at], name, &ReadingBudget::new(1 << 22));
         }
     }
 }

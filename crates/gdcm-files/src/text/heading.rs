@@ -1,5 +1,7 @@
 //! Names and units of columns from the lines above them.
 
+use gdcm_core::assembly::direction_of;
+
 use crate::text::columns::{Layout, comment, is_rule};
 use crate::text::separator::{Separator, cell_number};
 
@@ -186,6 +188,8 @@ pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
         let is_index = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
         if let Some((name, unit)) = inner
             && ((always && !is_index(unit)) || is_unit(unit))
+            // "az [+down]" says a sign.
+            && direction_of(unit).is_none()
         {
             return (clean(name), Some(unit.trim().to_owned()).filter(|unit| !unit.is_empty()));
         }
@@ -273,6 +277,7 @@ mod unit_word_tests {
         assert_eq!(cut("_Vind,_kias"), ("Vind".to_owned(), Some("kias".to_owned())));
         assert_eq!(cut("re(LAT->P)"), ("re(LAT->P)".to_owned(), None));
         assert_eq!(cut("mag(P/LAT) [dB]"), ("mag(P/LAT)".to_owned(), Some("dB".to_owned())));
+        assert_eq!(cut("az [+down]"), ("az [+down]".to_owned(), None));
         assert_eq!(cut("x []"), ("x".to_owned(), None));
     }
 }

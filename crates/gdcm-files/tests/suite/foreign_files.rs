@@ -1,7 +1,8 @@
 //! Models and responses as GNU Octave, NumPy, python-control and spreadsheets write them.
 
-use gdcm_core::assembly::FoundModel;
+use gdcm_core::assembly::{Assembly, ChannelLabel, FoundModel, ProblemKind, Rules, proposed_rules};
 use gdcm_core::dataset::ResponseDraft;
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{FoundModels, models_of_bytes};
 use nalgebra::DMatrix;
 
@@ -10,7 +11,7 @@ use crate::program_folder;
 fn found(name: &str) -> FoundModels {
     let bytes = std::fs::read(program_folder().join("tests/data/foreign").join(name)).expect("the file is there");
     let name = name.rsplit('/').next().unwrap_or(name);
-    models_of_bytes(&bytes, name, 1 << 26).unwrap_or_else(|error| panic!("{name}: {error}"))
+    models_of_bytes(&bytes, name, &ReadingBudget::new(1 << 26)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// The only model of a file.
@@ -72,6 +73,42 @@ fn a_discrete_model_of_octave_keeps_its_sample_time() {
     let discrete = model("octave/d_text.txt");
     assert_eq!(matrices(&discrete), matrices(&model("octave/expected-discrete.mat")));
     assert_eq!(discrete.draft.timing.sample_time_s, Some(0.02));
+}
+
+#[test]
+fn a_discrete_model_without_a_sample_time_is_asked_about_and_never_taken_as_continuous() {
+    let mut discrete = model("octave/d_text.txt");
+    discrete.draft.timing.sample_time_s = None;
+    let is_asked = |model: &FoundModel, sample_time_s: Option<f64>| {
+        let assembly = Assembly::new(vec![model.clone()], Rules { sample_time_s, ..Rules::default() });
+        assembly.problems().iter().any(|problem| matches!(problem.kind, ProblemKind::NoSampleTime { .. }))
+    };
+    assert!(is_asked(&discrete, None));
+    assert!(!is_asked(&discrete, Some(0.02)) && !is_asked(&discrete, Some(0.0)));
+    assert!(!is_asked(&model("octave/m_text.txt"), None));
+}
+
+#[test]
+fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the_name() {
+    let mut found = model("octave/ss_text.txt");
+    found.outputs[5] = ChannelLabel::named("-NZ");
+    let factor =
+        |rules: Rules| Assembly::new(vec![found.clone()], rules).parts()[0].outputs.uses[5].clone().map(|of| of.factor);
+    let rules = || {
+        let mut rules = proposed_rules("", std::slice::from_ref(&found));
+        rules.outputs.iter_mut().for_each(|channel| channel.unit_in_files = Some(channel.unit.clone()));
+        rules
+    };
+    assert_eq!(rules().outputs[5].name, "NZ");
+    assert_eq!(factor(rules()), Some(-1.0), "the mark is the sign");
+    let mut said = rules();
+    said.signs.insert("NZ".into(), 1.0);
+    assert_eq!(factor(said.clone()), Some(1.0));
+    said.role_signs.insert("physics".into(), [("NZ".to_owned(), -1.0)].into());
+    said.rows.entry(found.key()).or_default().role = Some(gdcm_core::assembly::RowRole::Nominal);
+    assert_eq!(factor(said.clone()), Some(-1.0));
+    said.rows.entry(found.key()).or_default().signs = Some([("NZ".to_owned(), 1.0)].into());
+    assert_eq!(factor(said), Some(1.0));
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod analysis;
 mod dataset_file;
 mod figures;
 mod foreign_files;
+mod fuzz;
 mod hostile_files;
 mod identification;
 mod made_up;

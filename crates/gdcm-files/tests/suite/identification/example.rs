@@ -9,13 +9,16 @@ use gdcm_core::progress::Unobserved;
 use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
 use gdcm_core::study::IdentificationRequest;
 use gdcm_files::records_of_bytes;
+use gdcm_files::variables::ReadingBudget;
 
 use super::common::{response, space};
 use crate::EXAMPLE;
 
 static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
     let archive = crate::records_archive();
-    records_of_bytes(&archive, "example-records.zip", 1 << 30).expect("the archive is whole").tables
+    records_of_bytes(&archive, "example-records.zip", &ReadingBudget::new(1 << 30))
+        .expect("the archive is whole")
+        .tables
 });
 
 /// What the records of a condition give, held out what its name says.

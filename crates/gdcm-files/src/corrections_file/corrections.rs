@@ -325,7 +325,7 @@ impl<'a> ChannelNames<'a> {
                 "airspeed_kt": airspeed_kt,
                 "inputs": gains["inputs"],
                 "outputs": gains["outputs"],
-                "delays_s": schedule.has_delays().then(|| self.delays_s(&correction)),
+                "delays_s": schedule.delays.is_some().then(|| self.delays_s(&correction)),
                 "lead": self.leads(&correction),
             });
             without_empty(row, &["delays_s", "lead"])

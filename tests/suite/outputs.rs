@@ -207,7 +207,8 @@ fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_writt
         desk.gdcm(&["report", data, "--out", "report.html"]).assert_done();
         let written = names(desk.directory.path());
         assert!(written.len() >= 10, "{written:?}");
-        for name in written.iter().filter(|name| !name.contains("small")) {
+        // JSON is data: it holds the names as they are.
+        for name in written.iter().filter(|name| !name.ends_with(".json")) {
             let text = fs::read_to_string(desk.path(name)).unwrap();
             let control = text.chars().find(|letter| letter.is_control() && *letter != '\n');
             assert_eq!(control, None, "{file}: {name}");

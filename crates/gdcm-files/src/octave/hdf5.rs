@@ -51,7 +51,11 @@ fn decoded(group: &Value, variable: &str, budget: &ReadingBudget<'_>) -> Result<
             let class = parts.field("classname").and_then(<[Value]>::first);
             let Some(Value::Text(class)) = class else { return Err(damaged(variable, "an object has no class")) };
             let class = class.texts.first().cloned().unwrap_or_default();
-            Value::Object(Object { class, records: records(parts, true, variable, budget)? })
+            // Its fields lie in a group of their own beside the name of the class.
+            let Some(Value::Struct(fields)) = parts.field("value").and_then(<[Value]>::first) else {
+                return Err(damaged(variable, "an object has no fields"));
+            };
+            Value::Object(Object { class, records: records(fields, true, variable, budget)? })
         }
         (Some(Form::Scalar(_) | Form::Matrix(_) | Form::Diagonal(_)), Value::Array(array)) => {
             Value::Array(turned(array, variable, budget)?)
@@ -133,7 +137,7 @@ fn records(
     budget: &ReadingBudget<'_>,
 ) -> Result<StructArray, VariableFault> {
     let mut records = StructArray { shape: vec![1, 1], fields: Vec::new() };
-    for (name, values) in parts.fields.iter().filter(|(name, _)| name != "classname") {
+    for (name, values) in &parts.fields {
         let inner = format!("{variable}.{name}");
         let value = values.first().map(|value| decoded(value, &inner, budget)).transpose()?;
         let values = match value {

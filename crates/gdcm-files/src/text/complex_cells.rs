@@ -31,6 +31,8 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
         }
         split.push('\n');
     }
+    // Behind the last end of a line an empty one was read.
+    split.pop();
     Ok(Some(split))
 }
 

@@ -336,7 +336,8 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
 /// Whether no cell of a line is a number, and one holds letters.
 fn is_heading(line: &str) -> bool {
     let strong = ['|', ';', '\t', ','];
-    let is_between = |c: char| if line.contains(strong) { strong.contains(&c) } else { c.is_whitespace() };
+    let is_strong = line.contains(strong);
+    let is_between = |c: char| if is_strong { strong.contains(&c) } else { c.is_whitespace() };
     let mut cells = line.split(is_between).map(str::trim).filter(|cell| !cell.is_empty());
     let is_number = |cell: &str| cell_number(cell, false).is_some_and(|number| !number.is_nan());
     line.chars().any(char::is_alphabetic) && !cells.any(is_number)

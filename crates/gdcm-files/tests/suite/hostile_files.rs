@@ -72,7 +72,7 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
 
 #[test]
 fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() {
-    let members: Vec<String> = (0..100_000).map(|at| format!("\"A{at}\":0")).collect();
+    let members: Vec<String> = (0..2_000).map(|at| format!("\"A{at}\":0")).collect();
     for words in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
         assert!(words == "read" || words.contains("would take more than 4000 million steps of work"), "{words}");
     }

@@ -119,10 +119,15 @@ impl OutputSet {
 
     /// Puts every file in its place, or none.
     pub fn persist(self) -> Result<(), FileError> {
-        let directories: BTreeSet<&Path> = self.staged.iter().map(|staged| directory_of(&staged.target)).collect();
+        // Each directory once, by whatever way: a set that waited for itself would wait for ever.
+        let directory = |staged: &Staged| {
+            let directory = directory_of(&staged.target);
+            fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned())
+        };
+        let directories: BTreeSet<PathBuf> = self.staged.iter().map(directory).collect();
         // Of one file the last to write is right.
         let is_set = self.staged.len() > 1;
-        let _locks: Vec<SetLock> = directories.into_iter().filter(|_| is_set).filter_map(SetLock::of).collect();
+        let _locks: Vec<SetLock> = directories.iter().filter(|_| is_set).filter_map(|of| SetLock::of(of)).collect();
         let mut placed: Vec<Placed> = Vec::new();
         for Staged { path, target, temporary } in self.staged {
             #[cfg(test)]
@@ -355,6 +360,18 @@ mod tests {
             assert_eq!(whole_set(directory.path()).as_deref(), Some("again"));
             assert_eq!(names(directory.path()), [SET[0], CHECKSUMS, SET[1], SET[2]], "nothing is left behind");
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_set_of_which_one_file_is_there_and_whose_directory_has_two_names_takes_its_place() {
+        let directory = tempfile::tempdir().unwrap();
+        let (real, link) = (directory.path().join("real"), directory.path().join("link"));
+        fs::create_dir(&real).unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        fs::write(real.join(SET[1]), "before").unwrap();
+        write_set(&link, "after").unwrap();
+        assert_eq!(whole_set(&real).as_deref(), Some("after"));
     }
 
     #[test]

@@ -53,7 +53,7 @@ fn desk() -> Desk {
         head.to_owned() + &(0..80).map(row).collect::<String>()
     };
     fs::write(desk.path("sweep_1.csv"), text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2)).unwrap();
-    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P,Q\n", 0.2)).unwrap();
+    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P,Q\n", 0.3)).unwrap();
     desk
 }
 

@@ -1,5 +1,6 @@
 //! Files of either kind that the program opens.
 
+use std::io::Read;
 use std::path::Path;
 
 use gdcm_core::study::{Difference, Study};
@@ -31,10 +32,19 @@ impl Opened {
     }
 }
 
-/// Whether a path is a folder, or a file that by its name only models can be taken from: neither a dataset nor a study.
+/// Whether a path is a folder, or a file that by its name and its first sign only models can be taken from: neither a dataset nor a
+/// study.
 pub fn holds_models(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    path.is_dir() || path.is_file() && !matches!(extension.as_deref(), Some("json" | "gz"))
+    let by_name = !matches!(extension.as_deref(), Some("json" | "gz"));
+    path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
+}
+
+/// Whether the first sign of a file opens an object of JSON.
+fn begins_an_object(path: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
+    read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
 /// Opens a dataset or a study, whichever the file says it is.

@@ -164,5 +164,5 @@ fn a_name_with_signs_that_xml_has_no_place_for_is_still_xml() {
     let text = svg(&figure);
     let document = Document::parse(&text).unwrap();
     let title = document.descendants().find(|node| node.has_tag_name("title")).unwrap();
-    assert_eq!(title.text(), Some("abc\"<&>"));
+    assert_eq!(title.text(), Some("a\\u{1}bc\"<&>"));
 }

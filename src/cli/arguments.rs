@@ -51,7 +51,7 @@ pub enum Command {
     Report(Box<ReportArguments>),
     /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
     #[command(
-        after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as python --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
+        after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as py --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
     )]
     Export(Box<ExportArguments>),
     /// Make a dataset of a folder of model files: MATLAB, NumPy, JSON, text. Without rules, proposes them and says what is missing.

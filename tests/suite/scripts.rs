@@ -18,6 +18,16 @@ fn desk_with_half() -> Desk {
     desk
 }
 
+/// A record of a second and a half, too short to identify anything from.
+fn write_record(desk: &Desk) {
+    let row = |k: u32| {
+        let at = f64::from(k);
+        let (stick, rate) = ((0.3 * at).sin(), (0.2 * at).cos());
+        format!("{:.2},{stick:.3},{:.3},{rate:.3},{:.3}\n", 0.02 * at, 0.5 * rate, 0.4 * stick)
+    };
+    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>()).unwrap();
+}
+
 #[test]
 fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
     let desk = desk_with_half();
@@ -25,7 +35,7 @@ fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
     assert!(ended.status == 0 && ended.error.starts_with("caution: condition 10: "), "{ended:?}");
     let ended = desk.gdcm(&["check", "missing.json"]);
     assert!(ended.status == 2 && ended.error.starts_with("error: missing.json: "), "{ended:?}");
-    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
+    write_record(&desk);
     let identify =
         ["identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
     let ended = desk.gdcm(&identify);
@@ -83,7 +93,7 @@ fn a_second_variable_that_the_dataset_does_not_say_is_refused_before_the_work() 
 #[test]
 fn a_second_delay_of_one_channel_is_refused() {
     let desk = Desk::new();
-    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n0,1,2,3,4\n0.02,2,3,4,5\n").unwrap();
+    write_record(&desk);
     let ended = desk.gdcm(&[
         "identify",
         "a.csv",
@@ -145,7 +155,7 @@ fn no_thread_to_be_had_is_an_error_in_words() {
     let desk = Desk::new();
     // More than any machine can map.
     let mut command = desk.command(&["check", "small.json"]);
-    let ended = crate::commands::Ended::of(&command.env("RUST_MIN_STACK", "70368744177664").output().unwrap());
+    let ended = crate::commands::Ended::of(&command.env("RUST_MIN_STACK", "140737488355328").output().unwrap());
     ended.assert_failed(1, &["error: no thread is to be had"]);
 }
 

@@ -110,7 +110,7 @@ fn the_embedded_example_is_analysed_without_a_file() {
 
 /// The result of a condition, of a file of corrections.
 fn condition_of<'j>(corrections: &'j Value, id: &str) -> &'j Value {
-    entries(&corrections["conditions"]).iter().find(|condition| condition["id"].to_string() == id).unwrap()
+    entries(&corrections["conditions"]).iter().find(|condition| condition["id"].as_u64() == id.parse().ok()).unwrap()
 }
 
 #[test]

@@ -97,6 +97,7 @@
 //! |---|---|
 //! | [`units`] | every conversion of units |
 //! | [`message_text`] | text from files, fit for a message |
+//! | [`whole_number`] | whole numbers of files, however they are written |
 //! | [`executor`] | who carries out pieces of work that do not depend on one another |
 //! | [`dataset`] | what the engineer loads: channels, models, flight conditions; checked once |
 //! | [`progress`] | how far long work is, and whether it is still wanted |

@@ -103,10 +103,13 @@ pub(super) fn curve_lines(
     }
 }
 
+/// Adds the shapes of something to those of a plot.
+type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
+
 /// Shapes among the items of a plot, which nobody points at: that is not egui_plot's business.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
-    draw: Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>,
+    draw: Drawing<'a>,
 }
 
 impl<'a> DrawnItem<'a> {

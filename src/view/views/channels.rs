@@ -176,7 +176,7 @@ impl FigureWords for GainPlots<'_> {
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
         let MarkId::Condition(id) = *id else { return Vec::new() };
-        let asked = match self.quantities[plot].scalar {
+        match self.quantities[plot].scalar {
             Scalar::NetGain(pair) => vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))],
             Scalar::ChannelDelay(channel) => vec![
                 ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
@@ -193,8 +193,7 @@ impl FigureWords for GainPlots<'_> {
                 gain.into_iter().chain(scheduled).collect()
             }
             _ => Vec::new(),
-        };
-        asked
+        }
     }
 }
 

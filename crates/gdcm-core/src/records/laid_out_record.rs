@@ -111,28 +111,6 @@ impl LaidOutRecord {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::assembly::standard_patterns;
-
-    #[test]
-    fn a_name_says_manoeuvre_condition_and_validation() {
-        let patterns = standard_patterns();
-        let guess = |name: &str| {
-            let guess = RecordGuess::of(name, &patterns);
-            (guess.kind, guess.held_out, guess.condition, guess.airspeed_kt)
-        };
-        assert_eq!(guess("cond01_sweep_LON_1.csv"), (RecordKind::Sweep, false, Some(1), None));
-        assert_eq!(guess("cond11_validation.csv"), (RecordKind::Other, true, Some(11), None));
-        assert_eq!(guess("c03_045kt/LatChirp2.mat"), (RecordKind::Sweep, false, Some(3), Some(45.0)));
-        assert_eq!(guess("fc-7/3-2-1-1 ped.txt"), (RecordKind::ThreeTwoOneOne, false, Some(7), None));
-        assert_eq!(guess("doublet_val_2.csv"), (RecordKind::ThreeTwoOneOne, true, None, None));
-        assert_eq!(guess("multi_sine_1_hold-out"), (RecordKind::Multisine, true, None, None));
-        assert_eq!(guess("values.csv"), (RecordKind::Other, false, None, None));
-    }
-}
-
 /// Leaves out each record whose samples are those of one before it, with a caution: evidence counts once, however often and under
 /// whatever names it is given. What the engineer said of a copy that was told before stands.
 pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
@@ -156,4 +134,26 @@ fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
         record.inputs.iter().chain(&record.outputs).map(|sample| sample.to_bits()).collect()
     };
     (a.inputs.shape(), a.outputs.shape()) == (b.inputs.shape(), b.outputs.shape()) && bits(a) == bits(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assembly::standard_patterns;
+
+    #[test]
+    fn a_name_says_manoeuvre_condition_and_validation() {
+        let patterns = standard_patterns();
+        let guess = |name: &str| {
+            let guess = RecordGuess::of(name, &patterns);
+            (guess.kind, guess.held_out, guess.condition, guess.airspeed_kt)
+        };
+        assert_eq!(guess("cond01_sweep_LON_1.csv"), (RecordKind::Sweep, false, Some(1), None));
+        assert_eq!(guess("cond11_validation.csv"), (RecordKind::Other, true, Some(11), None));
+        assert_eq!(guess("c03_045kt/LatChirp2.mat"), (RecordKind::Sweep, false, Some(3), Some(45.0)));
+        assert_eq!(guess("fc-7/3-2-1-1 ped.txt"), (RecordKind::ThreeTwoOneOne, false, Some(7), None));
+        assert_eq!(guess("doublet_val_2.csv"), (RecordKind::ThreeTwoOneOne, true, None, None));
+        assert_eq!(guess("multi_sine_1_hold-out"), (RecordKind::Multisine, true, None, None));
+        assert_eq!(guess("values.csv"), (RecordKind::Other, false, None, None));
+    }
 }

@@ -23,6 +23,9 @@ const FAR: f64 = 1e3;
 const ARC_POINTS: usize = 60;
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 
+/// The zeros of a model for the response whose zeros are shown.
+type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
+
 /// Poles of every model of one condition: all of them, and the window of the slow modes; physics models ×, identified ones +.
 /// `zeros_of` gives those of a model for the response whose zeros are shown, where one is.
 pub fn poles_figure(
@@ -86,11 +89,7 @@ pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) ->
 }
 
 /// Zeros of one response in the nominal model and in both representatives, as circles; they may lie far out, and widen no range.
-fn zeros(
-    source: &ConditionSource<'_>,
-    shown: &[SourceModel],
-    (pair, zeros_of): (Pair, &dyn Fn(&ModelId) -> Vec<Complex<f64>>),
-) -> Vec<Dots> {
+fn zeros(source: &ConditionSource<'_>, shown: &[SourceModel], (pair, zeros_of): (Pair, ZerosOf<'_>)) -> Vec<Dots> {
     let has_zeros = |role| matches!(role, Role::Nominal | Role::Representative | Role::IdentifiedRepresentative);
     let group = |model: &SourceModel| {
         let key = format!("zeros of {}, {}", source.dataset().pair_name(pair), model.role.key(model.rejected));

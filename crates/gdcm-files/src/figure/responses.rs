@@ -81,10 +81,10 @@ impl ResponseCache {
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = ResponseShape::of(&curves.identified[reference].curve(pair));
+        let reference_shape = ResponseShape::of(curves.identified[reference].curve(pair));
         let shapes = |kind| {
             let laid = |response: &Arc<FrequencyResponse>| {
-                ResponseShape::of(&response.curve(pair)).phase_aligned(&reference_shape)
+                ResponseShape::of(response.curve(pair)).phase_aligned(&reference_shape)
             };
             curves.bundle(kind).iter().map(laid).collect()
         };
@@ -154,7 +154,7 @@ impl AirspeedCache {
         }
         let mut first: Option<ResponseShape> = None;
         let shape = |(id, response): &(ModelId, Arc<FrequencyResponse>)| {
-            let shape = ResponseShape::of(&response.curve(pair));
+            let shape = ResponseShape::of(response.curve(pair));
             let shape = match &first {
                 Some(first) => shape.phase_aligned(first),
                 None => shape,

@@ -29,7 +29,9 @@ use crate::mat::is_hdf5;
 use crate::mat73::dataset::{Elements, Order};
 use crate::mat73::values::{Objects, empty, records, rows, sparse, strings};
 use crate::octave;
-use crate::variables::{self, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault};
+use crate::variables::{
+    self, Array, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault,
+};
 
 /// MATLAB 7.3 and HDF5.
 pub(crate) struct Hdf5;
@@ -332,6 +334,16 @@ fn members(group: &Group, path: &str, budget: &ReadingBudget<'_>) -> Result<Vec<
     }
 }
 
+/// Octave keeps the sides of an array without elements in its place, and says so at the group that it lies in.
+fn without_elements(value: &mut Value) {
+    if let Value::Array(sides) = value
+        && sides.re.contains(&0.0)
+    {
+        *sides =
+            Array { shape: sides.re.iter().rev().map(|side| *side as usize).collect(), ..Array::matrix(0, 0, vec![]) };
+    }
+}
+
 /// The value of a group.
 fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
     let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
@@ -357,6 +369,9 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
         for (name, object) in members {
             let value = reader.value(&object, &within(path, &name), depth + 1)?;
             fields.push((name, vec![value]));
+        }
+        if marks.empty {
+            fields.iter_mut().flat_map(|(_, values)| values).for_each(without_elements);
         }
         StructArray { shape: vec![1, 1], fields }
     };

@@ -231,12 +231,12 @@ impl Objects {
     }
 }
 
+/// The cells in which objects lie, and the whole numbers of those cells that no floating-point number holds.
+pub(super) type Wrapper = (Vec<Value>, Vec<(usize, Vec<u64>)>);
+
 /// The cells that hold the objects, the first of which are the bytes of their directory; and to the last digit those of whole numbers
 /// of 64 bits, each with the number of its cell, counted from 0.
-pub(super) fn wrapper(
-    dataset: &Dataset,
-    budget: &ReadingBudget<'_>,
-) -> Result<(Vec<Value>, Vec<(usize, Vec<u64>)>), VariableFault> {
+pub(super) fn wrapper(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<Wrapper, VariableFault> {
     let reader = Reader { budget, objects: &Objects::References };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {

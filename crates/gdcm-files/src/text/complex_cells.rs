@@ -84,7 +84,7 @@ fn parts(cell: &str) -> Option<(String, String)> {
     let is_sign = |(at, letter): &(usize, char)| {
         *at > 0 && matches!(letter, '+' | '-') && !inner[..*at].ends_with(['e', 'E', 'd', 'D'])
     };
-    let (re, im) = match inner.char_indices().filter(is_sign).last() {
+    let (re, im) = match inner.char_indices().rfind(is_sign) {
         Some((at, _)) => inner.split_at(at),
         None => ("0", inner.as_str()),
     };

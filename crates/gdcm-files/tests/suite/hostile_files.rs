@@ -142,7 +142,7 @@ fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read
     std::fs::write(folder.path().join("A.csv"), "1,2\n3,4\n").unwrap();
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
     assert_eq!((found.files, found.faults[0].as_str()), (1, "p.csv: skipped, for this is a named pipe, not a file"));
-    let given = read_models(&[pipe.clone()], &Default::default(), &Silent).unwrap_err();
+    let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
     assert!(matches!(given, FileError::NotAFile { kind: "a named pipe", .. }), "{given}");
     assert!(matches!(load_dataset(&pipe), Err(FileError::NotAFile { .. })));
     let device = load_dataset(std::path::Path::new("/dev/zero")).unwrap_err().to_string();

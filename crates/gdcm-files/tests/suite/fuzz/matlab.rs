@@ -114,7 +114,7 @@ fn numbers(dice: &mut Dice, count: usize) -> Vec<u8> {
 fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
     let (sides, count) = shape(dice);
     match dice.below(if deeper == 0 { 5 } else { 10 }) {
-        0 => chars(name, *dice.of_list(&NAMES)),
+        0 => chars(name, dice.of_list::<&str>(&NAMES)),
         1 => {
             // Columns of a sparse matrix, with its numbers.
             let places = |dice: &mut Dice, count: usize, bound: usize| {
@@ -153,7 +153,7 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
             matrix(if is_object { 3 } else { 2 }, &sides, name, &[class, vec![head], values].concat())
         }
         8 => matrix(16, &[1, 1], name, &[value(dice, "", 0)]),
-        _ => opaque(name, *dice.of_list(&CLASSES), words_of(&[0xdd00_0000, 2, 1, 1, 1, 1])),
+        _ => opaque(name, dice.of_list::<&str>(&CLASSES), words_of(&[0xdd00_0000, 2, 1, 1, 1, 1])),
     }
 }
 

@@ -262,7 +262,7 @@ fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
     let mut is_dataset = false;
     if name.ends_with("json") {
         match load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from(name))) {
-            Ok(loaded) => is_dataset = Study::new(loaded.dataset).dataset.conditions().len() > 0,
+            Ok(loaded) => is_dataset = !Study::new(loaded.dataset).dataset.conditions().is_empty(),
             Err(error) => check_words(name, Some(error))?,
         }
     }

@@ -104,7 +104,7 @@ pub struct AssembleArguments {
     /// What is said about the files; without it, it is proposed and written beside the dataset.
     #[arg(long, value_name = "RULES.json")]
     pub rules: Option<PathBuf>,
-    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    /// Headings of the columns of tables that do not say them, separated by commas: `omega [rad/s],mag [dB],phase [deg]`.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
     /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model; may be repeated.
@@ -127,7 +127,7 @@ pub struct ConvertArguments {
     /// Files, or folders with all that is in them.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
-    /// Headings of the columns of tables that do not say them, separated by commas: "omega [rad/s],mag [dB],phase [deg]".
+    /// Headings of the columns of tables that do not say them, separated by commas: `omega [rad/s],mag [dB],phase [deg]`.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
     /// The file of models.

@@ -117,7 +117,7 @@ fn range(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Res
 }
 
 fn cell(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Result<CellArray, VariableFault> {
-    let shape: Vec<usize> = numbers(parts, "dims").iter().map(|side| *side as usize).collect();
+    let shape: Vec<usize> = numbers(parts, "dims").iter().rev().map(|side| *side as usize).collect();
     let members = parts.fields.iter().filter(|(name, _)| name.starts_with('_'));
     let values = members.flat_map(|(_, values)| values).enumerate();
     let values: Vec<Value> = values

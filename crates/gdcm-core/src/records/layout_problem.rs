@@ -102,7 +102,7 @@ pub enum LayoutProblem {
     },
     /// A unit that cannot be converted.
     #[error(
-        "{channel} is in {from} in the file (column {column}) and is wanted in {to}: there is no factor from one to the other; say one"
+        "{channel} has the unit \"{from}\" in the file (column {column}) and \"{to}\" is wanted: there is no factor from one to the other; say one"
     )]
     Conversion {
         /// The channel.

@@ -146,7 +146,7 @@ fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
     let words = told(&proposed(&table).problems);
     assert!(words.contains("no column is the output NZ; say which is (columns: vibration"), "{words}");
     assert!(words.contains("several columns can be the output P: \"roll rate\", \"pb\""), "{words}");
-    assert!(words.contains("LAT is in in in the file (column \"lateral\") and is wanted in %"), "{words}");
+    assert!(words.contains("LAT has the unit \"in\" in the file (column \"lateral\") and \"%\" is wanted"), "{words}");
     // What the engineer says stands.
     let mut layout = proposed(&table).layout;
     layout.outputs = vec![Some(ColumnUse::as_it_is(6)), Some(ColumnUse { column: 0, factor: 9.80665 })];

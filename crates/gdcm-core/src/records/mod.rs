@@ -15,10 +15,12 @@ mod layout_proposal;
 mod layout_tests;
 mod record_layout;
 mod record_table;
+mod spectrogram;
 mod time_base;
 
 use crate::dataset::ChannelSide;
 
 pub use self::{
-    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, time_base::*,
+    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, spectrogram::*,
+    time_base::*,
 };

@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::dataset::{Band, BundleKind, ChannelSide, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{
-    CautionNote, ChannelPreparation, Identification, IdentificationCaution, IdentificationError, Preparation,
+    CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
+    held_s,
 };
 use gdcm_core::message_text::sanitized_path;
 use gdcm_core::records::{LaidOutRecord, RecordChannels};
@@ -49,9 +50,10 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
         let of_task: Vec<CautionNote> = found.cautions.iter().map(IdentificationCaution::note).chain(late).collect();
         cautions.extend(of_task.iter().map(|of| (task.condition, of.text.clone())));
-        of_use |= (0..channels.inputs.len()).any(|input| is_identified(&found, input, channels.outputs.len()));
+        let of_model = without_references(&channels, arguments);
+        of_use |= (0..of_model.inputs.len()).any(|input| is_identified(&found, input, of_model.outputs.len()));
         make_directory(&arguments.out)?;
-        let models = IdentifiedModels { found: &found, channels: &channels, records: &records, cautions: &of_task };
+        let models = IdentifiedModels { found: &found, channels: &of_model, records: &records, cautions: &of_task };
         add_identified(&models, file, &mut outputs)?;
         if let (Some(destination), Some(condition)) = (&mut destination, task.condition) {
             let entries = records.into_iter().map(|of| relative_entry(of, &arguments.records, &destination.path));
@@ -79,6 +81,13 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         return Err(Failure::NotIdentified { inputs: names.join(", ") });
     }
     if unread.is_empty() { Ok(()) } else { Err(Failure::Unread { paths: listed_paths(&unread) }) }
+}
+
+/// The channels of the models: references are none.
+fn without_references(channels: &RecordChannels, arguments: &IdentifyArguments) -> RecordChannels {
+    let mut of_model = channels.clone();
+    of_model.inputs.truncate(channels.inputs.len() - arguments.references().len());
+    of_model
 }
 
 /// Whether the records say anything of an input: the others do not explain it, and a response to it is known (M14).
@@ -156,7 +165,7 @@ fn tasks(
     let band = band(arguments, destination)?;
     let (mut records, unread) = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
-    let preparation = preparation(channels, &arguments.delay)?;
+    let preparation = preparation(channels, arguments, &records)?;
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
         None => {
@@ -193,6 +202,14 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
 /// The channels asked for, with what is said of their samples.
 fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
     let mut channels = named_channels(arguments, destination)?;
+    for (name, column) in arguments.references() {
+        if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *name) {
+            let reason = format!("{name} is an input or an output already; a reference is neither");
+            return Err(Failure::Option { option: "--reference", reason });
+        }
+        // Read as an input, after those of the model.
+        channels.inputs.push(with_column(ChannelRule::named(name.clone()), column.as_ref()));
+    }
     let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
     for (option, ChannelConversion { channel, said }) in
         units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
@@ -254,7 +271,12 @@ fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Res
 }
 
 /// How the channels are prepared: their known delays are taken out.
-fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
+fn preparation(
+    channels: &RecordChannels,
+    arguments: &IdentifyArguments,
+    records: &[LaidOutRecord],
+) -> Result<Preparation, Failure> {
+    let delays = &arguments.delay;
     let is_known =
         |delay: &ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
     if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
@@ -273,9 +295,20 @@ fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Pre
             ..ChannelPreparation::named(rule.name.clone())
         }
     };
-    Ok(Preparation {
+    let mut preparation = Preparation {
         inputs: channels.inputs.iter().map(prepared).collect(),
         outputs: channels.outputs.iter().map(prepared).collect(),
+        resample: arguments.resample.map(|rate| 1.0 / rate),
         ..Preparation::of(&[], &[])
-    })
+    };
+    for held in &arguments.held {
+        let refused = |reason| Failure::Option { option: "--held", reason };
+        let signal = preparation.signal(held).ok_or_else(|| refused(format!("{held} is none of the channels")))?;
+        let flights = records.iter().filter_map(|record| record.flight.as_deref());
+        let hold_s =
+            held_s(flights, &signal).ok_or_else(|| refused(format!("{held} changes with nearly every sample")))?;
+        let hold = if signal.role == ChannelSide::Input { Hold::Command { hold_s } } else { Hold::FreshSamples };
+        preparation.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
+    }
+    Ok(preparation)
 }

@@ -45,6 +45,15 @@ pub struct IdentifyArguments {
     /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
+    /// Recorded references that drove the loop from outside (a chirp, a position reference), in the same way as inputs: gusts fed back into the inputs no longer bias the response.
+    #[arg(long, value_name = "NAMES")]
+    pub reference: Option<ChannelList>,
+    /// A channel that is logged more often than it changes: an input is a command held and logged when it begins, an output a slow sensor; may be repeated.
+    #[arg(long, value_name = "CHANNEL")]
+    pub held: Vec<String>,
+    /// Records with uneven sample times are interpolated to so many samples in a second.
+    #[arg(long, value_name = "HZ", value_parser = real_number)]
+    pub resample: Option<f64>,
     /// Order of the model, in place of those that the records can carry; may be repeated.
     #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
     pub order: Vec<usize>,
@@ -84,8 +93,14 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
+    /// The references, each with its column where one is said.
+    pub fn references(&self) -> &[(String, Option<String>)] {
+        self.reference.as_ref().map_or(&[], |list| &list.channels)
+    }
+
     /// Sets what is searched to what is asked for.
     pub fn search(&self, options: &mut Options) {
+        options.references = self.references().len();
         if !self.order.is_empty() {
             options.orders = Some(self.order.clone());
         }

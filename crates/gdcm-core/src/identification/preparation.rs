@@ -6,6 +6,8 @@ use nalgebra::DMatrix;
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
+/// Sample times over that of a record to which it may be interpolated.
+const RESAMPLED: (f64, f64) = (0.25, 1.5);
 /// The longest gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
@@ -68,8 +70,8 @@ pub struct Preparation {
     pub inputs: Vec<ChannelPreparation>,
     /// The outputs, in the order of the columns.
     pub outputs: Vec<ChannelPreparation>,
-    /// Whether a record with uneven sample times may be interpolated.
-    pub resample: bool,
+    /// The sample time \[s\] to which a record with uneven sample times is interpolated; none: it is refused.
+    pub resample: Option<f64>,
     /// Whether an output that stands still while others move is right, and no gap.
     pub keep_frozen: bool,
     /// The longest gap, in samples, that is bridged by a straight line; a longer one splits the record.
@@ -86,7 +88,7 @@ impl Preparation {
         Self {
             inputs: channels(inputs),
             outputs: channels(outputs),
-            resample: false,
+            resample: None,
             keep_frozen: false,
             longest_bridge: 3,
             least_segment_s: 10.0,
@@ -115,11 +117,20 @@ impl Preparation {
         channels.get_mut(signal.index)
     }
 
+    /// The channel of a name.
+    #[must_use]
+    pub fn signal(&self, name: &str) -> Option<Signal> {
+        self.channels().map(|(signal, _)| signal).find(|signal| signal.name == name)
+    }
+
     fn checked(&self) -> Result<(), PreparationError> {
         for (role, channels) in [(ChannelSide::Input, &self.inputs), (ChannelSide::Output, &self.outputs)] {
             if channels.is_empty() {
                 return Err(PreparationError::NoChannels { role });
             }
+        }
+        if let Some(seconds) = self.resample.filter(|seconds| !(seconds.is_finite() && *seconds > 0.0)) {
+            return Err(PreparationError::Resampling { seconds });
         }
         for (signal, channel) in self.channels() {
             let hold_s = match channel.hold {
@@ -224,6 +235,14 @@ pub enum PreparationError {
         /// The delay or hold \[s\].
         seconds: f64,
     },
+    /// The sample time to interpolate to is none.
+    #[error(
+        "a sample time of {seconds:.4} s to interpolate to: it must be from a quarter to one and a half times that of the record"
+    )]
+    Resampling {
+        /// As asked for \[s\].
+        seconds: f64,
+    },
     /// The least length of a segment is no length.
     #[error("a least piece of {seconds} s: it must be greater than 0")]
     LeastSegment {
@@ -253,7 +272,7 @@ pub enum PreparationError {
     },
     /// Sample times vary too much.
     #[error(
-        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Allow resampling if the stamps can be trusted"
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Where the stamps can be trusted, say a rate to interpolate to (--resample)"
     )]
     UnevenSampling {
         /// The record's name.
@@ -350,13 +369,18 @@ fn prepare_record(
     preparation: &Preparation,
 ) -> Result<PreparedRecord, PreparationError> {
     check_shape(record, preparation)?;
-    let clock = Clock::of(record, preparation.longest_bridge)?;
+    let mut clock = Clock::of(record, preparation.longest_bridge)?;
     let mut cautions = Vec::new();
     if clock.is_uneven() {
         let (name, percent) = (record.name.clone(), clock.jitter_percent);
-        if !preparation.resample {
+        let Some(sample_time_s) = preparation.resample else {
             return Err(PreparationError::UnevenSampling { record: name, percent });
+        };
+        // Shorter ones show nothing more, longer ones would fold what is above them into the band.
+        if !(RESAMPLED.0 * clock.sample_time_s..=RESAMPLED.1 * clock.sample_time_s).contains(&sample_time_s) {
+            return Err(PreparationError::Resampling { seconds: sample_time_s });
         }
+        clock.sample_time_s = sample_time_s;
         cautions.push(RecordCaution::Resampled { record: name, percent });
     }
     let (tracks, mut gaps) = Track::all(record, &clock, preparation);

@@ -8,7 +8,9 @@ use crate::view::View;
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies};
+use gdcm_core::records::{
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
+};
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
@@ -255,7 +257,8 @@ fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], f
         for (entry, table) in of_file.into_iter().zip(tables.into_iter().flatten()) {
             match table {
                 Ok(table) => {
-                    let mut row = row_of(RecordTable { name: entry.name.clone(), ..table }, &channels);
+                    let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
+                    let mut row = row_of(table, &channels);
                     (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
                     found.rows.entry(id).or_default().push(row);
                 }
@@ -272,7 +275,7 @@ fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<
     let read = read_records(paths, &Untold)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
-    for table in read.tables {
+    for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
         let row = row_of(table, &channels);
         let id = row.guess.condition_of(dataset).unwrap_or(shown);
         found.rows.entry(id).or_default().push(row);

@@ -20,10 +20,12 @@ use gdcm_core::message_text::sanitized;
 use crate::file_error::FileError;
 use crate::foreign_formats::ForeignFormat;
 use crate::json_values::Json;
+use crate::logs::{Blackbox, DataFlash, DataFlashText, ULog};
 use crate::mat::Mat;
 use crate::mat73::Hdf5;
 use crate::npy::Npy;
 use crate::octave::{OctaveBinary, OctaveText};
+use crate::record_files::Columns;
 use crate::source::{kind_of, read_bytes, sha256};
 use crate::text::{Literals, Text};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
@@ -53,8 +55,22 @@ pub(crate) trait Importer: Sync {
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
-const FORMATS: [&dyn Importer; 10] =
-    [&Npy, &Zip, &Hdf5, &OctaveBinary, &ForeignFormat, &Mat, &OctaveText, &Json, &Literals, &Text];
+const FORMATS: [&dyn Importer; 14] = [
+    &Npy,
+    &Zip,
+    &Hdf5,
+    &OctaveBinary,
+    &ULog,
+    &DataFlash,
+    &Blackbox,
+    &ForeignFormat,
+    &Mat,
+    &OctaveText,
+    &DataFlashText,
+    &Json,
+    &Literals,
+    &Text,
+];
 
 /// What a file holds.
 pub(crate) enum Contents {
@@ -73,6 +89,8 @@ pub(crate) enum Contents {
     Dataset(Box<Dataset>),
     /// Models of this program.
     Models(Vec<FoundModel>),
+    /// Logs of an aircraft: records, of whatever clocks.
+    Logs(Vec<Columns>),
     /// The files of an archive.
     Archive {
         /// Its arrays, which belong together.

@@ -21,6 +21,7 @@ mod response_estimate;
 mod sampling;
 mod spectrum;
 mod subspace;
+mod topics;
 mod triangular_factor;
 mod uncertainty;
 mod validation;
@@ -40,5 +41,5 @@ use self::{
 };
 pub use self::{
     candidate::*, cautions::*, diagnostics::*, flight_record::*, identify::*, local_polynomial::*, options::*,
-    preparation::*, prepared_data::*, response_estimate::*, spectrum::*, uncertainty::*, validation::*,
+    preparation::*, prepared_data::*, response_estimate::*, spectrum::*, topics::*, uncertainty::*, validation::*,
 };

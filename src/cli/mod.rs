@@ -38,7 +38,7 @@ use models::{ReadingProgress, counted};
 use read_record::{hold_out, laid_out, record_table, relative_entry};
 use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
 use summary::{LABEL, leave_one_out_section};
-use terminal::{Manner, TerminalProgress, caution, caution_of, error, note, progress_target, say};
+use terminal::{Manner, TerminalProgress, caution, caution_of, error, keep_caution, note, progress_target, say};
 use text_table::{by_words, indented, labelled, listed, listed_conditions};
 
 pub use arguments::{

@@ -14,7 +14,7 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::{by_words, indented, labelled, listed, listed_conditions};
+use super::{by_words, indented, keep_caution, labelled, listed, listed_conditions};
 
 /// Width of the labels at the left of a section.
 pub(super) const LABEL: usize = 14;
@@ -23,7 +23,9 @@ pub(super) const LABEL: usize = 14;
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
     for doubt in &analysis.doubts {
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&doubt.words(&analysis.study.dataset))));
+        let words = doubt.words(&analysis.study.dataset);
+        keep_caution(&doubt.conditions, &words);
+        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
     }
     for condition in analysis.study.dataset.conditions() {
         text.push('\n');
@@ -207,6 +209,7 @@ fn cautions_section(analysis: &Analysis) -> String {
     }
     let mut text = if rows.is_empty() { String::new() } else { repeated_table(analysis, &rows) };
     for (conditions, words) in by_words(others) {
+        keep_caution(&conditions, &words);
         let words = format!("{}: {words}", listed_conditions(&conditions));
         text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
     }
@@ -246,6 +249,8 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) ->
         });
         table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(cell)).chain(offer));
     }
+    let conditions: Vec<ConditionId> = rows.iter().map(|(id, _)| *id).collect();
+    keep_caution(&conditions, &sentence);
     labelled(0, "Cautions", LABEL, &format!("{sentence}:")) + &indented(&table, 2)
 }
 

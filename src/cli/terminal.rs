@@ -110,13 +110,17 @@ pub(super) fn caution(words: &str) {
 
 /// The same caution of some conditions, said once with the conditions named.
 pub(super) fn caution_of(conditions: &[ConditionId], words: &str) {
-    let mut said = said();
-    if said.manner.json {
-        let conditions = conditions.iter().map(|id| id.0).collect();
-        return said.cautions.push(SaidCaution { text: plain(words, ""), conditions });
+    if said().manner.json {
+        return keep_caution(conditions, words);
     }
     let of = if conditions.is_empty() { String::new() } else { format!("{}: ", listed_conditions(conditions)) };
     complain("caution", &format!("{of}{words}"));
+}
+
+/// Keeps a caution for the JSON object, where it stands apart; the text says it at its own place.
+pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
+    let conditions = conditions.iter().map(|id| id.0).collect();
+    said().cautions.push(SaidCaution { text: plain(words, ""), conditions });
 }
 
 /// Says what is wrong.

@@ -131,6 +131,11 @@ fn file_entries(state: &State) -> Vec<Entry> {
             "A dataset of a folder of model files: MATLAB, NumPy, JSON, text",
             AssemblingCommand::Open.into(),
         ),
+        Entry::new(
+            "Add flight records…",
+            "Of the condition that their names say, or of the one shown",
+            RecordsCommand::AskFiles.into(),
+        ),
     ];
     let save = [
         Entry::new("Save study", "Where it was saved last", Command::SaveStudy).keys(CTRL, Key::S),
@@ -157,7 +162,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
 }
 
 /// What can be done with the flight records of the condition shown.
-fn record_entries(state: &State) -> [Entry; 5] {
+fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let of = |id| state.records.conditions.get(&id);
     let has_records = of(condition).is_some_and(|records| records.used_rows().next().is_some());
@@ -165,9 +170,8 @@ fn record_entries(state: &State) -> [Entry; 5] {
     let is_taken = state.study.taken_models().any(|(id, _)| id == condition);
     let all = state.records.conditions.values().any(|records| records.used_rows().next().is_some());
     let entry = |name, meaning, command: RecordsCommand| Entry::new(name, meaning, command.into());
-    let (of_files, here) = ("Of the condition that their names say, or of the one shown", "Into the condition shown");
+    let here = "Into the condition shown";
     [
-        entry("Add flight records…", of_files, RecordsCommand::AskFiles).within(Menu::File, 1),
         entry("Identify models", "Of the condition shown, from its flight records", RecordsCommand::Identify)
             .enabled(has_records),
         entry("Identify models of all conditions", "From their flight records", RecordsCommand::IdentifyAll)

@@ -39,20 +39,13 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         }
         Some(Ok(shown)) => {
             header_ui(ui, state, shown, palette, commands);
+            // What is said of signs and units goes before every number.
+            let remarks = remarks_shown(state, shown);
+            let (doubts, others) = remarks.split_at(shown.doubts.len());
+            remarks_ui(ui, state, doubts, palette, commands);
             ui.scope(|ui| channels_ui(ui, state, shown, palette, commands));
             objective_ui(ui, shown, palette, commands);
-            for remark in remarks_shown(state, shown) {
-                remark_ui(ui, palette, &remark);
-                if let Some(pair) = remark.ignore {
-                    ignore_ui(ui, state, pair, commands);
-                }
-                if let Some((channel, of)) = remark.turn {
-                    turn_ui(ui, turn_entry(state, channel, of), commands);
-                }
-                if let Some(phase) = remark.phase {
-                    offer_ui(ui, phase, commands);
-                }
-            }
+            remarks_ui(ui, state, others, palette, commands);
             lead_ui(ui, state, shown, palette);
             let header = palette.small("In detail");
             CollapsingHeader::new(header).id_salt("details").show(ui, |ui| {
@@ -60,6 +53,22 @@ fn outcome_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
                     ui.label(RichText::new(sentence).size(SMALL_SIZE));
                 }
             });
+        }
+    }
+}
+
+/// Sentences, each with what can be done about it.
+fn remarks_ui(ui: &mut Ui, state: &State, remarks: &[Remark], palette: &Palette, commands: &mut Vec<Command>) {
+    for remark in remarks {
+        remark_ui(ui, palette, remark);
+        if let Some(pair) = remark.ignore {
+            ignore_ui(ui, state, pair, commands);
+        }
+        if let Some((channel, of)) = remark.turn {
+            turn_ui(ui, turn_entry(state, channel, of), commands);
+        }
+        if let Some(phase) = remark.phase {
+            offer_ui(ui, phase, commands);
         }
     }
 }

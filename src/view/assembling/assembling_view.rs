@@ -5,9 +5,10 @@ use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, R
 use crate::view::{
     Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
 };
-use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, UnitRule};
+use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, Signs, UnitRule};
 use gdcm_core::units::number;
 
+use super::details::{signs_of, trim_words};
 use super::{AssemblingCommand, AssemblyState, details_ui, preview_ui, problems_ui, table_ui};
 
 /// Draws the view in the place of everything below the menu.
@@ -177,7 +178,31 @@ fn channels_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, command
             button_ui(ui, Button::new(format!("Add {side}")).small(), "", add, commands);
         }
     });
+    signs_ui(ui, assembly, palette, commands);
     conversions_ui(ui, assembly, palette, commands);
+}
+
+/// The signs that are said of channels for a role, or for all files; those of one model stand with the model.
+fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    type Place = fn(&mut Rules) -> &mut Signs;
+    let places: [(&str, Place); 3] = [
+        ("Signs in all files", |rules| &mut rules.signs),
+        ("Signs of physics models", |rules| rules.role_signs.entry("physics".to_owned()).or_default()),
+        ("Signs of identified models", |rules| rules.role_signs.entry("identified".to_owned()).or_default()),
+    ];
+    let mut rules = assembly.assembly().rules().clone();
+    Grid::new("signs of channels").num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
+        for (name, place) in places {
+            ui.label(palette.small(name));
+            if let Some(text) = entry_ui(ui, name, &trim_words(place(&mut rules)), "NZ -1", 160.0) {
+                commands.push(match signs_of(&text) {
+                    Ok(signs) => assembly.changed(|rules| *place(rules) = signs),
+                    Err(why) => Command::Refuse(format!("{name}: {why}")),
+                });
+            }
+            ui.end_row();
+        }
+    });
 }
 
 /// A factor for each conversion that is asked for, and for those that were said.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use egui::{Grid, RichText, Role, Ui};
 
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui, named, typed_number};
-use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule};
+use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule, Signs};
 use gdcm_core::units::number;
 
 use super::AssemblyState;
@@ -159,7 +159,7 @@ fn say_condition(text: &str, row: &mut RowRule) -> Result<(), String> {
     Ok(())
 }
 
-fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
+pub(super) fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
     perturbation.iter().map(|(coordinate, by)| format!("{coordinate} {}", number(*by))).collect::<Vec<_>>().join(", ")
 }
 
@@ -171,12 +171,16 @@ fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
 
 /// "NZ -1, R 1": a channel of the dataset and its sign, separated by commas; an empty text says nothing.
 fn say_signs(text: &str, row: &mut RowRule) -> Result<(), String> {
-    let signs = numbers_by_name(text, "a channel and 1 or -1 as in \"NZ -1\"")?;
-    if let Some((channel, sign)) = signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
-        return Err(format!("the sign of {channel}: expected 1 or -1, found {}", number(*sign)));
-    }
-    row.signs = Some(signs).filter(|signs| !signs.is_empty());
+    row.signs = Some(signs_of(text)?).filter(|signs| !signs.is_empty());
     Ok(())
+}
+
+pub(super) fn signs_of(text: &str) -> Result<Signs, String> {
+    let signs = numbers_by_name(text, "a channel and 1 or -1 as in \"NZ -1\"")?;
+    match signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
+        Some((channel, sign)) => Err(format!("the sign of {channel}: expected 1 or -1, found {}", number(*sign))),
+        None => Ok(signs),
+    }
 }
 
 /// Names and numbers, separated by commas.

@@ -95,7 +95,8 @@ impl SignedName {
     /// Reads the marks of a name.
     pub fn of(text: &str) -> Self {
         let text = text.trim();
-        let begins_name = |rest: &str| rest.trim_start().starts_with(|letter: char| letter.is_alphabetic());
+        let begins_name =
+            |rest: &str| rest.trim_start().starts_with(|letter: char| letter.is_alphabetic() || letter == '#');
         let (minus, rest) = match text.strip_prefix(['-', '\u{2212}']).filter(|rest| begins_name(rest)) {
             Some(rest) => (true, rest.trim_start()),
             None => (false, text.strip_prefix('+').filter(|rest| begins_name(rest)).unwrap_or(text)),

@@ -22,7 +22,7 @@ pub enum ProblemKind {
     },
     /// A unit that cannot be converted.
     #[error(
-        "{channel} is in {from} in the file and in {to} in the dataset: there is no factor from one to the other; enter one"
+        "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset: there is no factor from one to the other; enter one"
     )]
     Conversion {
         /// The channel of the dataset.

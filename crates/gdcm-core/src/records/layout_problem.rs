@@ -77,20 +77,33 @@ pub enum LayoutProblem {
         /// Their names.
         found: String,
     },
-    /// Columns without names, and another number of them than channels.
+    /// Columns without names.
     #[error(
-        "the file has {found} columns without names, where {expected} are expected (time, then inputs, then outputs); say which \
-         column is which channel"
+        "the file has {found} columns without names; say which column is which channel, by its number: {channel}=#2, and so on for \
+         each"
     )]
     Unnamed {
-        /// Time and channels together.
-        expected: usize,
+        /// The first channel.
+        channel: String,
         /// Columns of the file.
         found: usize,
     },
+    /// A name that leaves the sign open.
+    #[error(
+        "nothing says whether column \"{column}\" is positive in the direction in which {channel} is; say it: {channel}={plain} \
+         takes the column as it is, {channel}=-{plain} turns it"
+    )]
+    Sign {
+        /// The channel.
+        channel: String,
+        /// The column.
+        column: String,
+        /// Its name without marks.
+        plain: String,
+    },
     /// A unit that cannot be converted.
     #[error(
-        "{channel} is in {from} in the file (column {column}) and is wanted in {to}: there is no factor from one to the other; say one"
+        "{channel} has the unit \"{from}\" in the file (column {column}) and \"{to}\" is wanted: there is no factor from one to the other; say one"
     )]
     Conversion {
         /// The channel.

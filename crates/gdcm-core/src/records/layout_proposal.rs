@@ -1,7 +1,7 @@
 //! Columns proposed for the time and the channels of a record.
 
 use super::*;
-use crate::assembly::{ChannelRule, conversion_factor, folded_name, same_channel};
+use crate::assembly::{ChannelRule, SignedName, conversion_factor, folded_name, same_channel, sign_between};
 use crate::units::number;
 
 /// What the engineer says about the time of records.
@@ -33,7 +33,8 @@ impl RecordLayout {
     /// time     as wished, else the column of that name, else the file's sample time
     /// channel  the column of its very name, or of one of its other names where it has some, else one that the field calls the
     ///          same; among several the one whose unit can be converted
-    /// else     columns that the file says are inputs or outputs, or columns without names, in order, if there are as many
+    /// else     columns that the file says are inputs or outputs, in order, if there are as many; columns without names are said
+    /// sign     as a mark says that stands in the name, or in the one that is asked for: -R, az (down); az onto NZ is asked
     /// factor   from the file's unit to the channel's; a file that says none is taken as the channel's rule says
     /// ```
     pub fn proposed(table: &RecordTable, channels: &RecordChannels, time: &TimeWish) -> LayoutProposal {
@@ -51,7 +52,10 @@ impl RecordLayout {
                 proposal.named(table, ("output", ChannelSide::Output), channels, time_column),
             )
         } else {
-            proposal.in_order(table, channels, time_column)
+            let channel = channels.inputs.iter().chain(&channels.outputs).map(|rule| rule.name.clone()).next();
+            let (channel, found) = (channel.unwrap_or_default(), table.columns.len());
+            proposal.problems.push(LayoutProblem::Unnamed { channel, found });
+            (vec![None; channels.inputs.len()], vec![None; channels.outputs.len()])
         };
         proposal.layout = RecordLayout { time, inputs, outputs };
         let told = std::mem::take(&mut proposal.problems);
@@ -141,29 +145,7 @@ impl LayoutProposal {
         uses
     }
 
-    /// Columns without names: the time, the inputs, the outputs.
-    fn in_order(
-        &mut self,
-        table: &RecordTable,
-        channels: &RecordChannels,
-        time: Option<usize>,
-    ) -> (Vec<Option<ColumnUse>>, Vec<Option<ColumnUse>>) {
-        let rest: Vec<usize> = (0..table.columns.len()).filter(|column| Some(*column) != time).collect();
-        let (m, l) = (channels.inputs.len(), channels.outputs.len());
-        if rest.len() != m + l {
-            let (expected, found) = (1 + m + l, table.columns.len());
-            self.problems.push(LayoutProblem::Unnamed { expected, found });
-            return (vec![None; m], vec![None; l]);
-        }
-        self.notes.push("columns without names: taken in order, inputs before outputs".to_owned());
-        let (inputs, outputs) = rest.split_at(m);
-        let mut of = |rules: &[ChannelRule], columns: &[usize]| -> Vec<Option<ColumnUse>> {
-            rules.iter().zip(columns).map(|(rule, column)| self.used(table, channels, rule, *column)).collect()
-        };
-        (of(&channels.inputs, inputs), of(&channels.outputs, outputs))
-    }
-
-    /// The column with its factor, turned where a mark before its name says so, and in words.
+    /// The column with its factor, turned where a mark in its name, or in what is asked for, says so; in words.
     fn used(
         &mut self,
         table: &RecordTable,
@@ -172,10 +154,25 @@ impl LayoutProposal {
         column: usize,
     ) -> Option<ColumnUse> {
         let used = self.converted(table, channels, rule, column)?;
-        if !rule.aliases.iter().any(|alias| unmarked(table, alias) != alias) {
+        let said = matches!(channels.said.get(&rule.name), Some(SaidConversion::Factor(_)));
+        let (name, quoted) = (table.columns[column].name.as_str(), table.quoted(column));
+        let has_mark = |text: &&str| SignedName::of(text).name != text.trim();
+        let of_alias = rule.aliases.iter().map(String::as_str).find(has_mark);
+        let sign = match of_alias {
+            Some(alias) => sign_between(alias, &rule.name),
+            None if said || !rule.aliases.is_empty() && !has_mark(&name) => Some(1.0),
+            None => sign_between(name, &rule.name),
+        };
+        let Some(sign) = sign else {
+            let (channel, column, plain) = (rule.name.clone(), name.to_owned(), plain(name));
+            self.problems.push(LayoutProblem::Sign { channel, column, plain });
+            return None;
+        };
+        if sign > 0.0 {
             return Some(used);
         }
-        self.notes.push(format!("{}: the sign of column {} is turned, as asked", rule.name, table.quoted(column)));
+        let why = if of_alias.is_some() { "as asked" } else { "as its name says" };
+        self.notes.push(format!("{}: the sign of column {quoted} is turned, {why}", rule.name));
         Some(ColumnUse { factor: -used.factor, ..used })
     }
 
@@ -216,33 +213,43 @@ impl LayoutProposal {
     }
 }
 
-/// The name of a column that the engineer says without the mark that turns its sign: "-az" is "az", unless a column is called that.
-fn unmarked<'a>(table: &RecordTable, alias: &'a str) -> &'a str {
-    alias.strip_prefix('-').filter(|_| table.find(alias).is_none()).unwrap_or(alias)
+/// A name without the marks of its sign: "-az" and "az (down)" are "az".
+fn plain(name: &str) -> String {
+    SignedName::of(name).name
 }
 
 /// The columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
+    let mut found: Vec<usize>;
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
         let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
         (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
     };
-    // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick.
-    let aliases: Vec<&str> = rule.aliases.iter().map(|alias| unmarked(table, alias)).collect();
-    let mut found = named(&|name| aliases.contains(&name));
-    if found.is_empty() {
-        found = aliases.iter().filter_map(|alias| table.find(alias)).collect();
-    }
-    if found.is_empty() {
-        found = named(&|name| aliases.iter().any(|wanted| folded_name(name) == folded_name(wanted)));
-    }
-    if found.is_empty() && aliases.iter().any(|alias| alias.starts_with('#')) {
-        return found;
-    }
-    let names = if aliases.is_empty() { vec![rule.name.as_str()] } else { aliases.clone() };
+    // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick. The very name goes
+    // before one with the mark of a sign, and that before what the field calls the same.
+    let aliases: Vec<String> = rule.aliases.iter().flat_map(|alias| [alias.clone(), plain(alias)]).collect();
     if aliases.is_empty() {
-        found = named(&|name| name == rule.name);
+        let wanted = plain(&rule.name);
+        let ways: [&dyn Fn(&str) -> bool; 3] =
+            [&|name| name == rule.name, &|name| plain(name) == wanted, &|name| same_channel(&plain(name), &wanted)];
+        found = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
+    } else {
+        let find = |alias: &String| table.find(alias);
+        let ways: [&dyn Fn(&str) -> bool; 3] = [
+            &|name| aliases.iter().any(|alias| folded_name(name) == folded_name(alias)),
+            &|name| aliases.iter().any(|alias| folded_name(&plain(name)) == folded_name(alias)),
+            &|name| aliases.iter().any(|alias| same_channel(&plain(name), alias)),
+        ];
+        found = named(&|name| rule.aliases.iter().any(|alias| alias == name));
+        if found.is_empty() {
+            found = aliases.iter().find_map(find).into_iter().collect();
+        }
+        let is_number = aliases.iter().any(|alias| alias.starts_with('#'));
+        if found.is_empty() && !is_number {
+            found = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
+        }
     }
+    let names = if aliases.is_empty() { vec![rule.name.clone()] } else { aliases };
     let of_columns = |is_it: &dyn Fn(&RecordColumn) -> bool| -> Vec<usize> {
         (0..table.columns.len()).filter(|&column| is_it(&table.columns[column])).collect()
     };
@@ -253,13 +260,10 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
     }
     // In logs whose columns are known, a field of the same letter is another thing: "PIDR.P" is no roll rate.
     let is_known = || table.columns.iter().any(|column| column.meaning.is_some());
-    if found.is_empty() && (!aliases.is_empty() || !is_known()) {
+    if found.is_empty() && (!rule.aliases.is_empty() || !is_known()) {
         found = of_columns(&|column| names.iter().any(|wanted| column.field() == *wanted));
     }
-    if found.is_empty() {
-        found = named(&|name| names.iter().any(|wanted| same_channel(name, wanted)));
-    }
-    if aliases.is_empty() {
+    if rule.aliases.is_empty() {
         found.retain(|&column| !is_position(table, column, rule));
     }
     if found.len() > 1 {
@@ -280,8 +284,8 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
 fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     /// A minute at 140 kt is 0.04 degrees.
     const MOST_DEG: f64 = 0.5;
-    /// Of its greatest value.
-    const MOST_CHANGE: f64 = 0.02;
+    /// Of its greatest value; where the column has the channel's very name, so little that no stick that is flown stands so still.
+    const MOST_CHANGE: [f64; 2] = [0.02, 0.002];
     let is_called = |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());
     let stands = |column: &RecordColumn, factor: f64| {
         column.range().is_some_and(|(least, most)| {
@@ -295,12 +299,14 @@ fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     }
     match own.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
         Some(unit) => conversion_factor(unit, "deg").is_some_and(|factor| stands(own, factor)),
-        None if own.name == rule.name => false,
         None => {
+            let most_change = MOST_CHANGE[usize::from(own.name == rule.name)];
             let hardly = |names: &[&str]| {
                 table.columns.iter().any(|column| {
                     let change = column.range().map(|(least, most)| (most - least) / least.abs().max(most.abs()));
-                    is_called(column, names) && stands(column, 1.0) && change.is_some_and(|change| change < MOST_CHANGE)
+                    is_called(column, names)
+                        && stands(column, 1.0)
+                        && change.is_some_and(|of| 0.0 < of && of < most_change)
                 })
             };
             hardly(&latitude) && hardly(&longitude)

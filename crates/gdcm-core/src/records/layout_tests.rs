@@ -31,7 +31,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
 /// A record as another tool names and orders its columns.
 fn record() -> RecordTable {
     table(vec![
-        column("az", "g", |k| 0.1 * (0.3 * k).sin()),
+        column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
         column("Time (s)", "s", |k| 0.02 * k),
         column("lateral", "%", |k| 50.0 + 5.0 * (0.2 * k).cos()),
         column("roll rate", "rad/s", |k| 0.2 * (0.2 * k).sin()),
@@ -60,7 +60,7 @@ fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
             "LON: column \"delta_b\", taken to be in % as the file does not say",
             "LAT: column \"lateral\", in %",
             "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
-            "NZ: column \"az\", g → m/s² (× 9.80665)",
+            "NZ: column \"nz\", g → m/s² (× 9.80665)",
         ]
     );
     let flight = proposal.layout.flight_record(&table, &channels).unwrap();
@@ -121,7 +121,7 @@ fn a_time_that_falls_stands_still_or_goes_in_minutes_is_refused() {
     assert_eq!(with(column("t", "", |k| 20.0 * k)), "", "thousandths of a second, by their steps");
     let none = with(column("count", "", |k| k));
     assert!(
-        none.starts_with("no column gives the time; say which does, or the sample rate (columns: az, count"),
+        none.starts_with("no column gives the time; say which does, or the sample rate (columns: nz, count"),
         "{none}"
     );
     let rate = TimeWish { sample_time_s: Some(0.02), column: None };
@@ -130,7 +130,7 @@ fn a_time_that_falls_stands_still_or_goes_in_minutes_is_refused() {
     assert_eq!(RecordLayout::proposed(&table, &channels(), &rate).problems, []);
     let wrong = TimeWish { sample_time_s: None, column: Some("clock".into()) };
     let words = told(&RecordLayout::proposed(&table, &channels(), &wrong).problems);
-    assert!(words.starts_with("there is no column \"clock\"; there are az"), "{words}");
+    assert!(words.starts_with("there is no column \"clock\"; there are nz"), "{words}");
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
     let words = told(&proposed(&table).problems);
     assert!(words.contains("no column is the output NZ; say which is (columns: vibration"), "{words}");
     assert!(words.contains("several columns can be the output P: \"roll rate\", \"pb\""), "{words}");
-    assert!(words.contains("LAT is in in in the file (column \"lateral\") and is wanted in %"), "{words}");
+    assert!(words.contains("LAT has the unit \"in\" in the file (column \"lateral\") and \"%\" is wanted"), "{words}");
     // What the engineer says stands.
     let mut layout = proposed(&table).layout;
     layout.outputs = vec![Some(ColumnUse::as_it_is(6)), Some(ColumnUse { column: 0, factor: 9.80665 })];
@@ -158,18 +158,79 @@ fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
 }
 
 #[test]
-fn columns_without_names_are_taken_in_order_only_if_there_are_as_many() {
+fn columns_without_names_are_never_taken_by_themselves() {
     let mut table = table((0..5).map(|of| column("", "", move |k| 0.02 * k * f64::from(of + 1))).collect());
     table.named = false;
     for (index, column) in table.columns.iter_mut().enumerate() {
         column.name = format!("column {}", index + 1);
     }
     let proposal = proposed(&table);
+    assert_eq!(proposal.problems, [LayoutProblem::Unnamed { channel: "LON".into(), found: 5 }]);
+    assert_eq!(proposal.layout.inputs, [None, None]);
+    let said = |name: &str, unit: &str, alias: &str| ChannelRule { aliases: vec![alias.into()], ..rule(name, unit) };
+    let channels = RecordChannels {
+        inputs: vec![said("LON", "%", "#3"), said("LAT", "%", "#2")],
+        outputs: vec![said("P", "deg/s", "#5"), said("NZ", "m/s²", "-#4")],
+        ..RecordChannels::default()
+    };
+    let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
     assert_eq!(proposal.problems, []);
-    let columns = |uses: &[Option<ColumnUse>]| uses.iter().flatten().map(|used| used.column).collect::<Vec<_>>();
-    assert_eq!((columns(&proposal.layout.inputs), columns(&proposal.layout.outputs)), (vec![1, 2], vec![3, 4]));
-    table.columns.pop();
-    assert_eq!(proposed(&table).problems[0], LayoutProblem::Unnamed { expected: 5, found: 4 });
+    let uses = |uses: &[Option<ColumnUse>]| uses.iter().flatten().map(|of| (of.column, of.factor)).collect::<Vec<_>>();
+    assert_eq!(uses(&proposal.layout.inputs), [(2, 1.0), (1, 1.0)]);
+    assert_eq!(uses(&proposal.layout.outputs), [(4, 1.0), (3, -1.0)]);
+}
+
+#[test]
+fn a_mark_in_the_name_of_a_column_is_the_sign_and_a_sign_that_is_not_said_is_asked_for() {
+    let of = |name: &str, alias: Option<&str>| {
+        let table = table(vec![column("t", "s", |k| 0.02 * k), column(name, "", |k| k.sin())]);
+        let aliases = alias.into_iter().map(str::to_owned).collect();
+        let outputs = vec![ChannelRule { aliases, ..rule("NZ", "m/s²") }];
+        let channels = RecordChannels { outputs, ..RecordChannels::default() };
+        let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        let factor = proposal.layout.outputs[0].map(|used| used.factor);
+        factor.ok_or_else(|| told(&proposal.problems))
+    };
+    for (name, alias, factor) in [
+        ("NZ", None, 1.0),
+        ("-nz", None, -1.0),
+        ("az (down)", None, -1.0),
+        ("az[+down]", None, -1.0),
+        ("az (up)", None, 1.0),
+        ("az", Some("az"), 1.0),
+        ("az", Some("-az"), -1.0),
+        ("az (down)", Some("az"), -1.0),
+        ("az (down)", Some("az (down)"), -1.0),
+        ("-normal", Some("normal"), -1.0),
+    ] {
+        assert_eq!(of(name, alias), Ok(factor), "{name} {alias:?}");
+    }
+    let asked = of("az", None).unwrap_err();
+    assert!(asked.contains("NZ=az takes the column as it is, NZ=-az turns it"), "{asked}");
+}
+
+#[test]
+fn a_column_of_a_matrix_is_found_by_its_index_in_python_s_and_in_matlab_s_way() {
+    let table = table((1..4).map(|of| column(&format!("xyz_{of}"), "", |k| k)).collect());
+    let found = ["xyz[0]", "XYZ(1)", "xyz[2]", "#2", "xyz[3]", "xyz(0)", "xyz[-1]"].map(|name| table.find(name));
+    assert_eq!(found, [Some(0), Some(0), Some(2), Some(1), None, None, None]);
+}
+
+#[test]
+fn coordinates_of_the_place_are_not_sticks_even_under_their_very_names() {
+    let with = |moves: f64| {
+        let mut table = table(vec![
+            column("t", "s", |k| 0.02 * k),
+            column("LAT", "", move |k| 45.0 + moves * k),
+            column("LON", "", move |k| 9.0 + moves * k),
+            column("P", "deg/s", |k| k.sin()),
+            column("NZ", "m/s²", |k| k.cos()),
+        ]);
+        table.columns[4].unit = None;
+        proposed(&table).layout.inputs.iter().flatten().count()
+    };
+    assert_eq!(with(1e-5), 0, "a track");
+    assert_eq!(with(0.1), 2, "sticks");
 }
 
 #[test]
@@ -230,7 +291,7 @@ fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
     let carried = layout.carried_to(&second, &first).unwrap();
     let flight = carried.flight_record(&second, &channels()).unwrap();
     assert_eq!(flight, layout.flight_record(&first, &channels()).unwrap());
-    second.columns.retain(|column| column.name != "az");
+    second.columns.retain(|column| column.name != "nz");
     assert_eq!(layout.carried_to(&second, &first), None);
 }
 
@@ -293,7 +354,7 @@ fn a_unit_or_a_factor_that_is_said_stands_before_that_of_the_file() {
     channels.said.insert("P".to_owned(), SaidConversion::Unit("deg/s".to_owned()));
     let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
     assert_eq!(found.layout.outputs.iter().map(|used| used.unwrap().factor).collect::<Vec<_>>(), [1.0, -9.8]);
-    assert!(found.notes.contains(&"NZ: column \"az\", × -9.8 as asked".to_owned()), "{:?}", found.notes);
+    assert!(found.notes.contains(&"NZ: column \"nz\", × -9.8 as asked".to_owned()), "{:?}", found.notes);
 }
 
 #[test]
@@ -314,8 +375,8 @@ fn the_same_record_under_two_names_counts_once() {
 #[test]
 fn a_mark_before_the_name_of_a_column_turns_its_sign() {
     let mut channels = channels();
-    channels.outputs[1].aliases = vec!["-az".to_owned()];
+    channels.outputs[1].aliases = vec!["-nz".to_owned()];
     let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
     assert_eq!(found.layout.outputs[1], Some(ColumnUse { column: 0, factor: -9.806_65 }), "{found:?}");
-    assert!(found.notes.contains(&"NZ: the sign of column \"az\" is turned, as asked".to_owned()), "{:?}", found.notes);
+    assert!(found.notes.contains(&"NZ: the sign of column \"nz\" is turned, as asked".to_owned()), "{:?}", found.notes);
 }

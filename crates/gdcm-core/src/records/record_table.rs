@@ -120,9 +120,20 @@ impl RecordTable {
             let number: usize = name.trim().strip_prefix('#')?.parse().ok()?;
             number.checked_sub(1).filter(|column| *column < self.columns.len())
         };
+        // A column of a matrix, counted from 0 as Python does or from 1 as MATLAB does.
+        let indexed = || {
+            let (matrix, index, first) = match name.trim().strip_suffix(']') {
+                Some(rest) => rest.rsplit_once('[').map(|(matrix, index)| (matrix, index, 0))?,
+                None => name.trim().strip_suffix(')')?.rsplit_once('(').map(|(matrix, index)| (matrix, index, 1))?,
+            };
+            let index: usize = index.trim().parse().ok()?;
+            let column = format!("{matrix}_{}", index.checked_sub(first)? + 1);
+            position(&|name| name.eq_ignore_ascii_case(&column))
+        };
         position(&|column| column == name)
             .or_else(|| position(&|column| column.eq_ignore_ascii_case(name.trim())))
             .or_else(numbered)
+            .or_else(indexed)
     }
 
     /// The name of a column in quotation marks.

@@ -14,6 +14,8 @@ use super::{Cancelled, Compared, ConditionResponses, Execution, Mismatches, Stud
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
 /// What scale factors of channels usually are, up or down: beyond, a unit is asked after.
 const USUAL_FACTOR: f64 = 5.0;
+/// How far the factors of single responses may be from their median, as a ratio: models differ by that much beside a unit.
+const MOST_SPREAD: f64 = 2.0;
 /// How near a factor has to be to a known one, as a ratio.
 const NEAR_FACTOR: f64 = 1.08;
 /// What takes one unit to another, and which.
@@ -202,9 +204,12 @@ fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Ch
         let all = sample.ln_gains(channel).into_iter().all(is_far);
         doubt.take(sample.condition, far.into_iter().map(|(pair, _)| pair).collect(), all);
     }
-    if !ln_gains.is_empty() {
-        doubt.convention = Convention::Factor(median(&mut ln_gains).exp());
+    let factor = median(&mut ln_gains);
+    // A unit is one factor: responses that ask for several differ by something else.
+    if ln_gains.iter().any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln()) {
+        return None;
     }
+    doubt.convention = Convention::Factor(factor.exp());
     doubt.found()
 }
 

@@ -244,10 +244,11 @@ fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String
     })
 }
 
-/// The held responses of which the two figures of D are far apart.
+/// The held responses of which the two figures of D are far apart, but for those whose sign is doubted: half a turn is no zero and no mode.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
     let delta = &result.comparison.delta;
-    let apart = result.held().marked().filter_map(|pair| {
+    let is_doubted = |pair: &Pair| result.doubts.iter().any(|of| of.turns().is_some() && of.pairs.contains(pair));
+    let apart = result.held().marked().filter(|pair| !is_doubted(pair)).filter_map(|pair| {
         let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
         let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
         let name = study.dataset.pair_name(pair);

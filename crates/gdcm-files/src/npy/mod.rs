@@ -84,17 +84,19 @@ impl StoredArray<'_> {
         match self.element {
             Element::Number(number) => {
                 budget.take(elements, 8, name)?;
-                let re = self.numbers(*number, 0, name)?;
+                let re = self.numbers(*number, 0, name, budget)?;
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: number.kind(), re, im: None }))
             }
             Element::Complex(part) => {
                 budget.take(elements, 16, name)?;
-                let (re, im) = (self.numbers(*part, 0, name)?, Some(self.numbers(*part, part.size(), name)?));
+                let numbers = |offset| self.numbers(*part, offset, name, budget);
+                let (re, im) = (numbers(0)?, Some(numbers(part.size())?));
                 Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: ElementKind::Float, re, im }))
             }
             Element::Unicode { .. } | Element::Bytes { .. } => {
                 budget.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
-                let texts = self.places(name)?.map(|place| self.text(place)).collect();
+                let text = |(at, place)| budget.go_on(at).map(|()| self.text(place));
+                let texts = self.places(name)?.enumerate().map(text).collect::<Result<_, _>>()?;
                 Ok(Value::Text(TextArray { shape: matrix_shape(self.shape), texts }))
             }
             Element::Record { fields, .. } => {
@@ -118,9 +120,18 @@ impl StoredArray<'_> {
         self.data.get(place * size..(place + 1) * size).unwrap_or_default()
     }
 
-    fn numbers(&self, number: StoredNumber, offset: usize, name: &str) -> Result<Vec<f64>, VariableFault> {
-        let decode = |place| number.decode(self.at(place).get(offset..).unwrap_or_default());
-        Ok(self.places(name)?.map(decode).collect())
+    fn numbers(
+        &self,
+        number: StoredNumber,
+        offset: usize,
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Vec<f64>, VariableFault> {
+        let decode = |(at, place)| {
+            budget.go_on(at)?;
+            Ok(number.decode(self.at(place).get(offset..).unwrap_or_default()))
+        };
+        self.places(name)?.enumerate().map(decode).collect()
     }
 
     fn text(&self, place: usize) -> String {

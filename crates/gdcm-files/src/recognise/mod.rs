@@ -7,6 +7,7 @@
 pub(super) mod record;
 mod state_space;
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use gdcm_core::assembly::{Dimension, FoundModel, PhysicalUnit};
@@ -189,16 +190,19 @@ fn suffixed(
 ) -> Result<Found<FoundModel>, VariableFault> {
     let mut found = Found::default();
     let letters = ["A", "B", "C", "D", "E"];
+    // Of variables with the same name the first counts.
+    let by_name: HashMap<&str, &Value> = variables.iter().rev().map(|of| (of.name.as_str(), &of.value)).collect();
     let suffixes = variables.iter().filter_map(|variable| variable.name.strip_prefix('A'));
     for suffix in suffixes.filter(|suffix| !suffix.is_empty()) {
-        budget.work((letters.len() * variables.len()) as u64, "")?;
+        budget.work(STEPS, "")?;
         let matrix = |letter: &&'static str| {
-            let variable = variables.iter().find(|variable| variable.name == format!("{letter}{suffix}"))?;
-            matrix_of(letter, &variable.value).is_ok().then_some((*letter, &variable.value))
+            let value = *by_name.get(format!("{letter}{suffix}").as_str())?;
+            matrix_of(letter, value).is_ok().then_some((*letter, value))
         };
         let matrices: Vec<(&str, &Value)> = letters.iter().filter_map(matrix).collect();
         if matrices.len() >= 3 && is_state_space(&Record::of_fields(matrices.iter().copied())) {
             // Labels beside them are of all.
+            budget.work(STEPS * variables.len() as u64, "")?;
             let labels = variables.iter().filter(|variable| !letters.contains(&variable.name.as_str()));
             let labels = labels.map(|variable| (variable.name.as_str(), &variable.value));
             let record = Record::of_fields(matrices.iter().copied().chain(labels));

@@ -25,11 +25,16 @@ fn channels() -> RecordChannels {
     }
 }
 
-/// The record of a table, by the layout proposed.
+/// The record of a table, by the layout proposed; of columns without names it is said which is which.
 fn flight(table: &RecordTable) -> gdcm_core::identification::FlightRecord {
-    let proposal = RecordLayout::proposed(table, &channels(), &TimeWish::default());
+    let mut channels = channels();
+    let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
+    for (index, rule) in rules.enumerate().filter(|_| !table.named) {
+        rule.aliases.push(format!("#{}", index + 2));
+    }
+    let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
     assert_eq!(proposal.problems, [], "{}", table.name);
-    proposal.layout.flight_record(table, &channels()).unwrap()
+    proposal.layout.flight_record(table, &channels).unwrap()
 }
 
 /// Asserts that a record holds what `make_files.py` wrote, to so many digits behind the point.

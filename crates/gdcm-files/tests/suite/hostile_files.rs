@@ -3,7 +3,6 @@
 use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{FileError, FolderProgress, load_dataset, models_of_bytes, read_models, records_of_bytes};
@@ -13,12 +12,10 @@ const MOST: u64 = 64 << 20;
 
 /// What is said of a file beyond the budget, whether models or records are looked for in it.
 fn refusals(name: &str, bytes: &[u8]) -> [String; 2] {
-    let begun = Instant::now();
     let refusals = [
         models_of_bytes(bytes, name, &ReadingBudget::new(MOST)).map(drop),
         records_of_bytes(bytes, name, &ReadingBudget::new(MOST)).map(drop),
     ];
-    assert!(begun.elapsed() < Duration::from_secs(20), "{name}");
     refusals.map(|refusal| refusal.map_or_else(|error| error.to_string(), |()| "read".to_owned()))
 }
 
@@ -72,34 +69,13 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
 
 #[test]
 fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() {
-    let members: Vec<String> = (0..2_000).map(|at| format!("\"A{at}\":0")).collect();
+    let members: Vec<String> = (0..100_000).map(|at| format!("\"A{at}\":0")).collect();
     for words in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
         assert!(words == "read" || words.contains("would take more than 4000 million steps of work"), "{words}");
     }
 }
 
-/// How long a reader goes on after it was stopped, where it has not ended by then: the least of a few tries, for the machine may have
-/// other things to do.
-fn goes_on(read: impl Fn(&ReadingBudget<'_>) + Sync, after: Duration) -> Duration {
-    let once = || {
-        let stop = Arc::new(AtomicBool::new(false));
-        std::thread::scope(|scope| {
-            let flag = Arc::clone(&stop);
-            let reader = scope.spawn(|| {
-                read(&ReadingBudget::new(1 << 30).stopped_by(flag));
-                Instant::now()
-            });
-            std::thread::sleep(after);
-            let stopped = Instant::now();
-            stop.store(true, Ordering::Relaxed);
-            reader.join().unwrap().saturating_duration_since(stopped)
-        })
-    };
-    (0..3).map(|_| once()).min().unwrap()
-}
-
 #[test]
-#[ignore = "it measures time, which takes a machine that has little else to do"]
 fn every_reader_stops_when_it_is_asked_to() {
     let lines = "0.02,1.5,-2.25,3.125,4\n".repeat(400_000);
     let list = format!("{{\"t\": [{}0]}}", "[0.25,1.5],".repeat(600_000));
@@ -118,11 +94,14 @@ fn every_reader_stops_when_it_is_asked_to() {
         ("array.npy", [head, vec![0; 32_000_000]].concat()),
     ];
     for (name, bytes) in &files {
-        for after in [20, 100, 400].map(Duration::from_millis) {
-            let models = goes_on(|budget| drop(models_of_bytes(bytes, name, budget)), after);
-            let records = goes_on(|budget| drop(records_of_bytes(bytes, name, budget)), after);
-            println!("{name}, after {after:?}: models {models:?}, records {records:?}");
-            assert!(models.max(records) < Duration::from_millis(200), "{name}: {models:?}, {records:?}");
+        // The flag is set while they read: whatever they are at, they end by it and have found nothing.
+        for most in [0, 1 << 20, 4 << 20] {
+            let stop = Arc::new(AtomicBool::new(false));
+            let tell = |taken| stop.store(taken >= most, Ordering::Relaxed);
+            let budget = ReadingBudget::new(1 << 30).stopped_by(Arc::clone(&stop)).telling(&tell);
+            let found = [models_of_bytes(bytes, name, &budget).err(), records_of_bytes(bytes, name, &budget).err()];
+            assert!(found.iter().flatten().all(|error| error.to_string().contains("stopped")), "{name}: {found:?}");
+            assert!(found.iter().all(Option::is_some), "{name}, after {most} bytes");
         }
     }
 }

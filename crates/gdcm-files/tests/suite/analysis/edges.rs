@@ -17,6 +17,7 @@ use crate::made_up::two_lags;
 const ONLY: ConditionId = ConditionId(1);
 
 const SHORT: &str = include_str!("../../../../../tests/data/edges/short-measurement.json");
+const SIX_BY_FOUR: &str = include_str!("../../../../../tests/data/edges/six-by-four.json");
 const NEAR: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
 
 fn dataset(value: &Value) -> Arc<Dataset> {
@@ -209,4 +210,20 @@ fn a_pole_on_the_grid_is_named() {
     let analysis = only(&value, &[]);
     let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
     assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
+}
+
+#[test]
+fn a_vanishing_alpha_gives_the_products_of_none_and_scattered_gains_are_no_unit() {
+    let value = json(SIX_BY_FOUR);
+    let products = |alpha: f64| {
+        let analysis = only(&value, &[setting::ALPHA_GAIN.to(alpha)]);
+        let result = analysis.condition(ONLY).unwrap();
+        let net = result.cost.map(|pair, _| result.correction.net_gain(pair));
+        assert!(analysis.doubts.iter().all(|doubt| doubt.pairs.len() == 1), "{:?}", analysis.doubts);
+        net.iter().map(|(_, gain)| *gain).collect::<Vec<f64>>()
+    };
+    // What is left of the term that alpha weighs is of the order of alpha; the solver's own tolerance is 1e-8.
+    for (tiny, none) in products(1e-12).into_iter().zip(products(0.0)) {
+        assert!((tiny / none).ln().abs() < 1e-6, "{tiny} {none}");
+    }
 }

@@ -38,6 +38,7 @@ impl GdcmApp {
             RecordsCommand::Add(paths) => self.add_records(paths),
             RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
             RecordsCommand::Show(page) => self.state.records.page = page,
+            RecordsCommand::ShowSpectrogram(input) => self.state.records.spectrogram = input,
             RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
             RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
             RecordsCommand::Identify => self.identify_conditions(&[condition]),

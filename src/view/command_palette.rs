@@ -91,24 +91,32 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
 /// How well a name answers a query: greater is better; `None` where a word of the query is not in it.
 ///
 /// Each word of the query, in any order, must be in the name: as a word of it (4), at the beginning of one (3), inside one (2), or
-/// at least as letters in this order (1). Of names that answer equally well the shorter one is meant more likely.
-pub fn answer_score(name: &str, query: &str) -> Option<(usize, Reverse<usize>)> {
-    let name = name.to_lowercase();
-    let mut score = 0;
-    for word in query.to_lowercase().split_whitespace() {
-        score += if words_of(&name).any(|whole| whole == word) {
-            4
-        } else if starts_a_word(&name, word) {
-            3
-        } else if name.contains(word) {
-            2
-        } else if has_letters(&name, word) {
-            1
-        } else {
-            return None;
-        };
+/// at least as letters in this order (1). What undoes or does again, named after what was done last, comes behind all others unless it
+/// is asked for. Of names that answer equally well that one comes first whose command, before its arguments, answers better, and
+/// then the shorter one.
+pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reverse<usize>)> {
+    let (name, query) = (name.to_lowercase(), query.to_lowercase());
+    let (mut score, mut of_command) = (0, 0);
+    let command = name.split(['(', ':']).next().unwrap_or_default();
+    for word in query.split_whitespace() {
+        score += word_score(&name, word)?;
+        of_command += word_score(command, word).unwrap_or_default();
     }
-    Some((score, Reverse(name.chars().count())))
+    let goes_back = ["undo", "redo"].into_iter().find(|back| words_of(&name).next() == Some(back));
+    let is_asked = goes_back.is_none_or(|back| query.split_whitespace().any(|word| back.starts_with(word)));
+    Some((is_asked, score, of_command, Reverse(name.chars().count())))
+}
+
+fn word_score(name: &str, word: &str) -> Option<usize> {
+    if words_of(name).any(|whole| whole == word) {
+        Some(4)
+    } else if starts_a_word(name, word) {
+        Some(3)
+    } else if name.contains(word) {
+        Some(2)
+    } else {
+        has_letters(name, word).then_some(1)
+    }
 }
 
 /// The places of the names that answer the query, the best first; all in their order for an empty one.
@@ -158,6 +166,16 @@ mod tests {
     fn the_beginning_of_a_word_comes_before_letters_inside_and_the_shorter_name_before_the_longer() {
         assert_eq!(found("ex"), ["Export corrections…", "Hold LON → Q exactly"]);
         assert_eq!(found("s")[..2], ["Save study as…", "Set the lower gain bound…"]);
+    }
+
+    #[test]
+    fn what_undoes_comes_last_unless_it_is_asked_for_and_a_command_comes_before_its_arguments() {
+        let names =
+            ["Undo reject 3 suggested (condition 10)", "Reject (condition 10)", "Condition 10: 60 kt, low altitude"];
+        let first = |query: &str| names[answers(names.into_iter(), query)[0]];
+        assert_eq!(first("cond 10"), names[2]);
+        assert_eq!(first("undo"), names[0]);
+        assert_eq!(answers(names.into_iter(), "cond 10"), [2, 1, 0]);
     }
 
     #[test]

@@ -16,7 +16,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("response", &["units", "dataset"]),
     ("fidelity", &["units", "dataset", "response"]),
     ("identification", &["units", "executor", "progress", "dataset", "response", "fidelity"]),
-    ("records", &["units", "dataset", "assembly", "identification"]),
+    ("records", &["units", "executor", "dataset", "assembly", "response", "identification"]),
     ("correction", &["units", "dataset", "response", "fidelity"]),
     ("schedule", &["units", "whole_number", "dataset", "response", "fidelity", "correction"]),
     ("uncertainty", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),

@@ -2,8 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, Id, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2};
-use egui_plot::{Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotPoints, PlotUi, Points, Span, VLine};
+use egui::{
+    Align2, Color32, Id, Rect, Response, Sense, Stroke, TextureId, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2,
+};
+use egui_plot::{
+    Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotImage, PlotPoint, PlotPoints, PlotUi, Points, Span, VLine,
+};
 
 use super::axes::{
     FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot,
@@ -113,6 +117,21 @@ pub struct Chart<'a> {
     pub marks: Vec<ChartMarks>,
     /// Vertical lines.
     pub verticals: Vec<f64>,
+    /// A picture below everything else.
+    pub image: Option<ChartImage>,
+}
+
+/// A picture over a stretch of both axes; the vertical one is of frequencies \[rad/s\].
+#[derive(Clone, Copy, Debug)]
+pub struct ChartImage {
+    /// It, the highest frequency on top.
+    pub texture: TextureId,
+    /// The places of its left and right edge.
+    pub across: [f64; 2],
+    /// The frequencies of its lower and upper edge \[rad/s\].
+    pub omega: [f64; 2],
+    /// In which frequencies are read.
+    pub unit: FrequencyUnit,
 }
 
 impl<'a> Chart<'a> {
@@ -131,6 +150,7 @@ impl<'a> Chart<'a> {
             lines: Vec::new(),
             marks: Vec::new(),
             verticals: Vec::new(),
+            image: None,
         }
     }
 }
@@ -188,7 +208,10 @@ fn count(chart: &Chart<'_>) -> usize {
 
 fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Plot<'a> {
     let height = if chart.across_label.is_empty() { TICKS_HEIGHT } else { LABELLED_HEIGHT };
-    let values = Ticks::Decimal(VERTICAL_TICK_GAP);
+    let values = match &chart.image {
+        Some(image) => Ticks::Frequency(image.unit),
+        None => Ticks::Decimal(VERTICAL_TICK_GAP),
+    };
     let plot = quiet_plot(id, palette)
         .sense(Sense::click_and_drag())
         .auto_bounds(true)
@@ -219,6 +242,12 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
 
 fn draw<'a>(plot: &mut PlotUi<'a>, chart: &Chart<'_>, palette: &Palette) {
     let place = |value: f64| chart.across.place(value);
+    if let Some(ChartImage { texture, across, omega, .. }) = &chart.image {
+        let [lower, upper] = omega.map(f64::log10);
+        let middle = PlotPoint::new(0.5 * (across[0] + across[1]), 0.5 * (lower + upper));
+        let size = vec2((across[1] - across[0]) as f32, (upper - lower) as f32);
+        plot.image(PlotImage::new("", *texture, middle, size).allow_hover(false));
+    }
     for span in &chart.spans {
         plot.span(Span::new("", place(span.ends[0])..=place(span.ends[1])).fill(span.color).border_width(0.0));
     }

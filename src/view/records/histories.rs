@@ -4,15 +4,16 @@ use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-use egui::{Id, Rect, RichText, ScrollArea, Sense, Ui, vec2};
+use egui::{ColorImage, Id, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, vec2};
 
-use crate::view::plot::{Chart, ChartAxis, ChartLine, ChartSpan, chart_ui};
-use crate::view::{Command, Palette};
+use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui};
+use crate::view::{Command, Palette, choice_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
+use gdcm_core::records::Spectrogram;
 
-use super::{ConditionRecords, Page, simulated, time_models_ui};
+use super::{ConditionRecords, Page, RecordsCommand, simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;
@@ -35,6 +36,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
     for model in &models {
         model.absence_ui(ui, state, palette);
     }
+    spectrogram_ui(ui, page, flight, commands);
     ScrollArea::vertical().id_salt("histories").auto_shrink(false).show(ui, |ui| {
         let rows = names.len().div_ceil(2).max(1);
         let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);
@@ -62,6 +64,61 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
             chart_ui(ui, Rect::from_min_size(corner, vec2(width, height)), &chart, palette);
         }
     });
+}
+
+/// Height of the spectrogram \[pt\].
+const SPECTROGRAM_HEIGHT: f32 = 150.0;
+
+/// The spectrogram of the channel that is chosen for it, below the charts and over the same time.
+fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>, commands: &mut Vec<Command>) {
+    let Page { state, records, palette } = page;
+    let inputs = state.dataset().inputs();
+    let chosen = state.records.spectrogram;
+    ui.horizontal(|ui| {
+        ui.label(palette.small("spectrogram of"));
+        let hint = "Power over time and frequency: a sweep is a ridge that rises";
+        let none = (None, "none", "Only the channels over time");
+        let of_inputs = inputs.iter().enumerate().map(|(index, channel)| (Some(index), channel.name.as_str(), hint));
+        let choices: Vec<_> = std::iter::once(none).chain(of_inputs).collect();
+        let mut wanted = chosen;
+        choice_ui(ui, "Input of the spectrogram", &mut wanted, &choices);
+        if wanted != chosen {
+            commands.push(RecordsCommand::ShowSpectrogram(wanted).into());
+        }
+    });
+    let Some((index, channel)) = chosen.and_then(|index| Some((index, inputs.get(index)?))) else { return };
+    let band = records.band.map_or(state.study.settings.band.max(), |band| band[1]);
+    let (highest, is_dark) = (2.0 * band, ui.visuals().dark_mode);
+    let key = (index, highest.to_bits(), is_dark);
+    let source: Source = Arc::clone(flight) as _;
+    let found = kept(ui, "spectrogram", &[source], key, || {
+        let samples: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
+        let found = Spectrogram::of(&flight.time_s, &samples, highest)?;
+        let picture = picture_of(&found, palette);
+        Some((ui.ctx().load_texture("spectrogram", picture, TextureOptions::LINEAR), found))
+    });
+    let Some((texture, found)): &Option<(TextureHandle, Spectrogram)> = &*found else {
+        ui.label(palette.small("The record is too short, or sampled too slowly, for a spectrogram"));
+        return;
+    };
+    let (title, unit) = (format!("{}: power over time, dB below the greatest", channel.name), state.display.unit);
+    let label = unit.axis_label();
+    let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
+    chart.group = Some(Id::unique("flight record"));
+    chart.fits_values = true;
+    let (across, omega) = (found.time_s, found.omega);
+    chart.image = Some(ChartImage { texture: texture.id(), across, omega, unit });
+    let area = ui.allocate_exact_size(vec2(ui.available_width(), SPECTROGRAM_HEIGHT), Sense::hover()).0;
+    chart_ui(ui, area, &chart, palette);
+}
+
+/// A pixel for each window and row, from the background to the colour of identified models.
+fn picture_of(found: &Spectrogram, palette: &Palette) -> ColorImage {
+    let shade =
+        |level: f64| palette.background.lerp_to_gamma(palette.identified, (1.0 - level / Spectrogram::FLOOR) as f32);
+    let rows = (0..Spectrogram::ROWS).rev();
+    let pixels = rows.flat_map(|row| found.levels.iter().map(move |levels| shade(levels[row]))).collect();
+    ColorImage::new([found.levels.len(), Spectrogram::ROWS], pixels)
 }
 
 /// The samples of a channel as unbroken lines: what is missing stays a gap.

@@ -89,6 +89,8 @@ pub enum RecordsCommand {
     SetBand(Option<[f64; 2]>),
     /// Draw the response of a model to the same inputs, or not.
     ShowTimeModel(TimeModel, bool),
+    /// Show the spectrogram of an input beside the records over time, or none.
+    ShowSpectrogram(Option<usize>),
     /// Show a page.
     Show(RecordsPage),
     /// Identify models of the condition shown.
@@ -218,6 +220,8 @@ pub struct RecordsState {
     pub page: RecordsPage,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
+    /// The input whose spectrogram is drawn.
+    pub spectrogram: Option<usize>,
     /// Path of files, as typed.
     pub path: String,
     /// The reading under way.

@@ -75,7 +75,7 @@ impl Provenance {
             named("variable ", &self.variable),
             named("made ", &self.made),
             named("SHA-256 ", &self.sha256),
-            (!self.records.is_empty()).then(|| format!("from the records {}", self.records.join(", "))),
+            (!self.records.is_empty()).then(|| format!("the records {}", self.records.join(", "))),
             self.note.clone(),
         ];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")

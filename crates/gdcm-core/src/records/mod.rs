@@ -17,6 +17,7 @@ mod layout_tests;
 mod record_layout;
 mod record_table;
 mod resampling;
+mod spectrogram;
 mod time_base;
 mod topic_tables;
 
@@ -24,5 +25,5 @@ use crate::dataset::ChannelSide;
 
 pub use self::{
     laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, resampling::*,
-    time_base::*, topic_tables::*,
+    spectrogram::*, time_base::*, topic_tables::*,
 };

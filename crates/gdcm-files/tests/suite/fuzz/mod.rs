@@ -21,13 +21,18 @@ mod texts;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{LazyLock, Mutex};
+use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
-use gdcm_core::assembly::FoundModel;
-use gdcm_core::study::Study;
+use gdcm_core::assembly::{FoundModel, RowRule, Rules};
+use gdcm_core::correction::Channel;
+use gdcm_core::dataset::{BundleKind, ModelId};
+use gdcm_core::study::{Edit, SignRole, Study};
 use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{DatasetOrigin, load_dataset_bytes, models_of_bytes, records_of_bytes};
+use gdcm_files::{
+    DatasetOrigin, Existing, OutputSet, add_rules, load_dataset, load_dataset_bytes, load_rules, models_of_bytes,
+    open_study_of, records_of_bytes, save_study,
+};
 
 use crate::made_up::tries;
 
@@ -168,6 +173,10 @@ const CLASSES: [&str; 16] = [
     "any",
 ];
 
+/// What a study and rules are called.
+const STUDY: &str = "small.gdcm-study.json";
+const RULES: &str = "small.gdcm-rules.json";
+
 /// A file: its name, and its bytes.
 type NamedBytes = (String, Vec<u8>);
 
@@ -186,8 +195,47 @@ static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         (name, std::fs::read(path).unwrap())
     });
-    files.collect()
+    files.chain(own_files()).collect()
 });
+
+/// The dataset of the study among the files.
+fn small_dataset() -> PathBuf {
+    crate::program_folder().join("tests/data/small-dataset.json")
+}
+
+/// A study with a representative, a sign and a variant, and rules that say something of a model.
+fn own_files() -> [NamedBytes; 2] {
+    let folder = tempfile::tempdir().unwrap();
+    let [study_path, rules_path] = [STUDY, RULES].map(|name| folder.path().join(name));
+    let loaded = load_dataset(&small_dataset()).unwrap();
+    let mut study = Study::new(Arc::clone(&loaded.dataset));
+    let condition = study.dataset.conditions()[0].id();
+    let model = study.dataset.conditions()[0].bundle(BundleKind::Physics).iter().next().unwrap().name.clone();
+    let sign = Edit::SetSign { channel: Channel::Output(0), of: Some(SignRole::Identified) };
+    let pin = Edit::Pin(ModelId::new(condition, BundleKind::Physics, model));
+    for edit in [pin, sign, Edit::KeepVariant { name: "other".to_owned() }] {
+        study.apply(&edit).unwrap();
+    }
+    save_study(&study, &loaded, &study_path).unwrap();
+    let row = RowRule { condition: Some(3), signs: Some([("NZ".to_owned(), -1.0)].into()), ..RowRule::default() };
+    let rules = Rules { name: "rules".to_owned(), rows: [("a/b.mat".to_owned(), row)].into(), ..Rules::default() };
+    let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+    add_rules(&rules, &rules_path, &mut outputs).unwrap();
+    outputs.persist().unwrap();
+    [(STUDY.to_owned(), std::fs::read(study_path).unwrap()), (RULES.to_owned(), std::fs::read(rules_path).unwrap())]
+}
+
+/// Opens a study or rules from a file of their own, for they are read from files alone; gives whether that went well.
+fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).map_err(|error| error.to_string())?;
+    let error = if name == STUDY { open_study_of(&path, &small_dataset()).err() } else { load_rules(&path).err() };
+    let words = error.map(|error| error.to_string().replace(&folder.path().display().to_string(), ""));
+    let read = words.is_none();
+    check_said(name, words.map(|words| words.trim_start_matches('/').to_owned()))?;
+    Ok(read)
+}
 
 /// One damage: a flipped bit, a hard number, a cut, a piece twice, a piece of another place.
 fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
@@ -249,8 +297,11 @@ struct Tally {
     failures: Mutex<Vec<String>>,
 }
 
-/// Reads a file as models, as records, and as a dataset where it is JSON; whether anything was found.
+/// Reads a file as models, as records, and as a dataset where it is JSON, or as a study or rules; whether anything was found.
 fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
+    if [STUDY, RULES].contains(&name) {
+        return opened(name, bytes);
+    }
     let budget = || ReadingBudget::new(MOST_MEMORY).with_work(MOST_WORK);
     let models = models_of_bytes(bytes, name, &budget());
     if let Ok(found) = &models {
@@ -272,7 +323,11 @@ fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
 }
 
 fn check_words(name: &str, error: Option<gdcm_files::FileError>) -> Result<(), String> {
-    let Some(words) = error.map(|error| error.to_string()) else { return Ok(()) };
+    check_said(name, error.map(|error| error.to_string()))
+}
+
+fn check_said(name: &str, words: Option<String>) -> Result<(), String> {
+    let Some(words) = words else { return Ok(()) };
     if !words.starts_with(name) || words.len() > 4000 || words.contains(|letter: char| letter.is_control()) {
         return Err(format!("an error that cannot be shown: {words:?}"));
     }

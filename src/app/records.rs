@@ -217,7 +217,21 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::SetHold(signal, hold) => {
             records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
         }
-        RecordsCommand::SetBand(band) => records.band = band,
+        RecordsCommand::SetBand(band) => {
+            records.band = band;
+            // Topics are brought to a clock that the band takes.
+            let mut channels = channels.clone();
+            channels.resampling.band_end = band.map(|[_, end]| end).or(channels.resampling.band_end);
+            for row in &mut records.rows {
+                if row.layout.is_resampled(&row.table, &channels) {
+                    let (table, layout) = (Arc::clone(&row.table), row.layout.clone());
+                    *row = LaidOutRecord {
+                        used: row.used,
+                        ..LaidOutRecord::new(table, layout, row.guess.clone(), &channels)
+                    };
+                }
+            }
+        }
         _ => return,
     }
     records.changed = true;
@@ -234,7 +248,11 @@ fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayou
 }
 
 fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
-    LaidOutRecord::proposed(table, channels, &TimeWish::default()).0
+    let (mut row, notes) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+    if row.layout.is_resampled(&row.table, channels) {
+        Arc::make_mut(&mut row.table).notes.extend(notes);
+    }
+    row
 }
 
 /// The records of a condition of the example that are inside the program.

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
-use gdcm_core::identification::{ChannelPreparation, Identification, IdentificationError, Preparation};
+use gdcm_core::identification::{ChannelPreparation, Hold, Identification, IdentificationError, Preparation, is_held};
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, ResamplingWish};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, ResamplingWish, median_step};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
@@ -147,7 +147,8 @@ fn tasks(
 ) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>), Failure> {
     let (mut records, unread) = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
-    let preparation = preparation(channels, &arguments.delay)?;
+    let mut preparation = preparation(channels, &arguments.delay)?;
+    hold(&mut preparation, &records, channels);
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
         None => {
@@ -259,6 +260,23 @@ fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Res
         }
         (_, Some(destination)) => Ok(destination.dataset.band()),
         _ => Err(Failure::Option { option: "--band", reason: "expected two frequencies".to_owned() }),
+    }
+}
+
+/// What the inputs that are held are prepared as, in records that were not brought to another clock: those moved their stamps.
+fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
+    let as_logged = |record: &&LaidOutRecord| !record.layout.is_resampled(&record.table, channels);
+    let Some(flight) = records.iter().find(as_logged).and_then(|record| record.flight.as_ref()) else { return };
+    for (index, input) in preparation.inputs.iter_mut().enumerate() {
+        if !channels.resampling.held.contains(&input.name) {
+            continue;
+        }
+        // A stair that is seen acts as it is; a command logged once a hold acts half a hold later (M14.1).
+        let values: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
+        input.hold = match median_step(&flight.time_s) {
+            Some(hold_s) if !is_held(&values) => Hold::Command { hold_s },
+            _ => Hold::Acts,
+        };
     }
 }
 

@@ -13,7 +13,7 @@ use super::real_number;
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
 pub struct IdentifyArguments {
-    /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
+    /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
     /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.

@@ -9,6 +9,7 @@
 //! A new format is a type with [`Importer`] in a file of its own, and an entry in [`FORMATS`].
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -244,7 +245,7 @@ fn list(
                 return Err(FileError::FolderTooDeep { path });
             }
             list(&path, root, deeper - 1, files, skipped)?;
-        } else if is_known(&path) {
+        } else if is_known(&path) && !is_other_log(&path) {
             let meant = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             match kind_of(meant) {
@@ -257,6 +258,18 @@ fn list(
         }
     }
     Ok(())
+}
+
+/// Whether a file whose ending many programs use (`.log`, `.bin`) is of none of the formats that are read.
+fn is_other_log(path: &Path) -> bool {
+    /// Every format of these endings is known by its first bytes.
+    const FIRST: usize = 64;
+    if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
+        return false;
+    }
+    let mut first = Vec::with_capacity(FIRST);
+    let read = fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
+    read.is_ok() && importer_of(&first, path).name() == Text.name()
 }
 
 /// Whether the name of a file ends as those of some format do; studies are no sources of models or records.

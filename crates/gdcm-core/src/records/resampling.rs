@@ -32,6 +32,13 @@ pub(super) struct Resampling {
     clock: CommonClock,
 }
 
+impl RecordLayout {
+    /// Whether the chosen columns have several clocks, or a rate is asked for: the record is on a clock of its own then.
+    pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
+        Resampling::of(self, table, channels).is_some()
+    }
+}
+
 impl Resampling {
     /// How the chosen columns come to one clock; none where they have one, or a column or the time is still to be said.
     ///

@@ -363,11 +363,12 @@ fn a_table_for_each_topic_in_an_archive_is_one_record() {
         let row = |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));
         format!("time,{name}\n{}", (0..20 * rate).map(row).collect::<String>())
     };
+    std::fs::write(folder.path().join("notes.log"), "it went well").unwrap();
     std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
     std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
     let found = read_records(&[folder.path().to_owned()], &Unheard).unwrap();
     let tables = with_topics_joined(found.tables, &sides(&["M"], &["q"]), &TimeWish::default());
-    assert_eq!(tables.len(), 1);
+    assert_eq!((tables.len(), found.faults), (1, Vec::new()), "other programs' logs are passed over");
     let (record, _) = LaidOutRecord::proposed(tables[0].clone(), &sides(&["M"], &["q"]), &TimeWish::default());
     let first = record.flight.unwrap();
     assert!(record.problems.is_empty() && first.time_s.len() > 900);

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
-use gdcm_core::identification::{ChannelPreparation, Hold, Identification, IdentificationError, Preparation, is_held};
+use gdcm_core::identification::{
+    CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
+    is_held,
+};
 use gdcm_core::message_text::sanitized_path;
 use gdcm_core::records::{LaidOutRecord, RecordChannels, ResamplingWish, median_step};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
@@ -46,8 +49,8 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         let records: Vec<ConditionRecord> =
             task.records.iter().zip(&found.record_uses).map(|(record, used)| record.entry(used)).collect();
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
-        let of_task: Vec<String> = found.cautions.iter().map(ToString::to_string).chain(late).collect();
-        cautions.extend(of_task.iter().map(|words| (task.condition, words.clone())));
+        let of_task: Vec<CautionNote> = found.cautions.iter().map(IdentificationCaution::note).chain(late).collect();
+        cautions.extend(of_task.iter().map(|of| (task.condition, of.text.clone())));
         of_use |= (0..channels.inputs.len()).any(|input| is_identified(&found, input, channels.outputs.len()));
         make_directory(&arguments.out)?;
         let models = IdentifiedModels { found: &found, channels: &channels, records: &records, cautions: &of_task };
@@ -96,10 +99,17 @@ struct IdentificationTask {
 
 impl IdentificationTask {
     /// The task of a group of records.
-    fn new((condition, records): Group, preparation: &Preparation, band: Band) -> Result<Self, Failure> {
+    fn new(
+        (condition, records): Group,
+        preparation: &Preparation,
+        band: Band,
+        arguments: &IdentifyArguments,
+    ) -> Result<Self, Failure> {
         let request = IdentificationRequest::of(records.iter(), preparation.clone(), [band.min(), band.max()]);
         let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
-        Ok(Self { request: request.map_err(refused)?, condition, records })
+        let mut request = request.map_err(refused)?;
+        arguments.search(&mut request.options);
+        Ok(Self { request, condition, records })
     }
 
     /// Identification proper, with a word about how far it is on a terminal.
@@ -110,14 +120,15 @@ impl IdentificationTask {
 
     /// A channel that is late in all records by what the nominal physics model of the condition says, and the option that takes its
     /// delay out.
-    fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<String> {
+    fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
         let late = ChannelTimeSkew::of_condition(&found.measured, options.band, condition)?;
         let signal = late.signal(dataset)?;
         let known = options.preparation.channel(&signal)?.delay_s;
         let words = late.words(&signal.name, &condition.bundle(BundleKind::Physics).get(condition.nominal())?.name);
-        Some(format!("{words} (--delay {}={:.3})", signal.name, known + late.delay_s))
+        let text = format!("{words} (--delay {}={:.3})", signal.name, known + late.delay_s);
+        Some(CautionNote { code: "time-skew", channel: Some(signal.name), text, ..CautionNote::default() })
     }
 
     /// A line a record, below the condition where there is one.
@@ -159,7 +170,7 @@ fn tasks(
             vec![(None, records)]
         }
     };
-    let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band));
+    let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band, arguments));
     Ok((tasks.collect::<Result<_, _>>()?, unread))
 }
 

@@ -5,10 +5,11 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
+use gdcm_core::identification::Options;
 use gdcm_core::records::SaidConversion;
 use gdcm_core::study::OfferedModels;
 
-use super::real_number;
+use super::{real_number, whole_number};
 
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
@@ -56,6 +57,15 @@ pub struct IdentifyArguments {
     /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
+    /// Order of the model, in place of those that the records can carry; may be repeated.
+    #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
+    pub order: Vec<usize>,
+    /// Past window: so many Laguerre projections predict the next, in place of those that the records can carry; may be repeated.
+    #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
+    pub past: Vec<usize>,
+    /// Laguerre pole, in rad/s, in place of 0.375, 0.54 and 0.75 times the upper end of the band; may be repeated.
+    #[arg(long, value_name = "RAD/S", value_parser = real_number)]
+    pub pole: Vec<f64>,
     /// The unit of a channel's samples, whatever their file says; may be repeated.
     #[arg(long, value_name = "CHANNEL=UNIT", value_parser = said_unit)]
     pub unit: Vec<ChannelConversion>,
@@ -83,6 +93,21 @@ pub struct IdentifyArguments {
     /// Overwrite files that are there already.
     #[arg(long)]
     pub force: bool,
+}
+
+impl IdentifyArguments {
+    /// Sets what is searched to what is asked for.
+    pub fn search(&self, options: &mut Options) {
+        if !self.order.is_empty() {
+            options.orders = Some(self.order.clone());
+        }
+        if !self.past.is_empty() {
+            options.pasts = Some(self.past.clone());
+        }
+        if !self.pole.is_empty() {
+            options.poles = self.pole.iter().map(|pole| pole / options.band[1]).collect();
+        }
+    }
 }
 
 /// Which models of an identification are put into a dataset.

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use gdcm_core::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
 use gdcm_core::dataset::{ConditionRecord, ModelDraft};
-use gdcm_core::identification::{EstimatePoint, Identification, PoleEstimate, ResponseEstimate};
+use gdcm_core::identification::{CautionNote, EstimatePoint, Identification, PoleEstimate, ResponseEstimate};
 use gdcm_core::records::RecordChannels;
 use gdcm_core::units::neper_to_db;
 
@@ -25,8 +25,8 @@ pub struct IdentifiedModels<'f> {
     pub channels: &'f RecordChannels,
     /// The records, in order.
     pub records: &'f [ConditionRecord],
-    /// What is to be minded, in words.
-    pub cautions: &'f [String],
+    /// What is to be minded.
+    pub cautions: &'f [CautionNote],
 }
 
 #[derive(Serialize)]
@@ -38,7 +38,18 @@ struct IdentifiedText<'m> {
     poles: Vec<PoleText>,
     validation: ValidationText<'m>,
     records: Vec<RecordText<'m>>,
-    cautions: &'m [String],
+    cautions: Vec<CautionText<'m>>,
+}
+
+#[derive(Serialize)]
+struct CautionText<'m> {
+    code: &'static str,
+    record: Option<&'m str>,
+    channel: Option<&'m str>,
+    /// Output and input.
+    pair: Option<&'m [String; 2]>,
+    band_rad_s: Option<[f64; 2]>,
+    text: &'m str,
 }
 
 #[derive(Serialize)]
@@ -66,6 +77,8 @@ struct ValidationText<'m> {
     /// Cost over its degrees of freedom of the records of the fit, and of those held out.
     fit_per_dof: f64,
     held_out_per_dof: Option<f64>,
+    /// The same where the model may move within its own uncertainty.
+    held_out_normalised: Option<f64>,
     /// Share of each output of the held-out records that the model reproduces in time \[%\], and Theil's coefficient of it.
     fit_percent: &'m [Option<f64>],
     theil: &'m [Option<f64>],
@@ -115,11 +128,12 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
         validation: ValidationText {
             fit_per_dof: found.cost,
             held_out_per_dof: found.held_out_cost,
+            held_out_normalised: found.held_out_normalised,
             fit_percent: in_time.map_or(&[], |of| &of.fit_percent),
             theil: in_time.map_or(&[], |of| &of.theil),
         },
         records: of.records.iter().enumerate().map(|(index, record)| record_text(found, index, record)).collect(),
-        cautions: of.cautions,
+        cautions: of.cautions.iter().map(caution_text).collect(),
     };
     outputs.add(path, |file| {
         serde_json::to_writer(&mut *file, &text)?;
@@ -144,6 +158,17 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
         partial_coherence: table(&|point, pair| point.partial_coherence[pair]),
         sd_db: table(&|point, pair| neper_to_db(point.sd(pair))),
         sd_deg: table(&|point, pair| point.sd(pair).to_degrees()),
+    }
+}
+
+fn caution_text(of: &CautionNote) -> CautionText<'_> {
+    CautionText {
+        code: of.code,
+        record: of.record.as_deref(),
+        channel: of.channel.as_deref(),
+        pair: of.pair.as_ref(),
+        band_rad_s: of.band_rad_s,
+        text: &of.text,
     }
 }
 
@@ -217,6 +242,9 @@ mod tests {
             criteria: Vec::new(),
             cost: 1.02,
             held_out_cost: None,
+            held_out_normalised: None,
+            feedback: None,
+            contrasts: Vec::new(),
             record_fits: Vec::new(),
             output_costs: Vec::new(),
             validation: None,
@@ -226,7 +254,7 @@ mod tests {
         }
     }
 
-    fn written(cautions: &[String]) -> Vec<u8> {
+    fn written(cautions: &[CautionNote]) -> Vec<u8> {
         let rule = |name: &str, unit: &str| ChannelRule { unit: unit.into(), ..ChannelRule::named(name) };
         let (inputs, outputs) = (vec![rule("LON", "%")], vec![rule("Q", "deg/s")]);
         let channels = RecordChannels { inputs, outputs, ..RecordChannels::default() };
@@ -242,7 +270,9 @@ mod tests {
 
     #[test]
     fn every_key_of_the_format_is_written_and_the_recommended_model_comes_first() {
-        let bytes = written(&["PED was not swept: its column is not identified".into()]);
+        let text = "PED was not swept: its column is not identified".to_owned();
+        let bytes =
+            written(&[CautionNote { code: "not-swept", channel: Some("PED".into()), text, ..CautionNote::default() }]);
         let text: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
         assert_eq!((&text["format"], &text["version"]), (&"gdcm-identified".into(), &1.into()));
         assert_eq!(
@@ -260,7 +290,11 @@ mod tests {
         );
         assert_eq!(text["validation"]["fit_percent"], serde_json::json!([]));
         assert_eq!(text["records"][0]["used_s"], serde_json::json!([[0.0, 60.0]]));
-        assert_eq!(text["cautions"][0], "PED was not swept: its column is not identified");
+        let caution = serde_json::json!({
+            "code": "not-swept", "record": null, "channel": "PED", "pair": null, "band_rad_s": null,
+            "text": "PED was not swept: its column is not identified"
+        });
+        assert_eq!(text["cautions"], serde_json::json!([caution]));
     }
 
     #[test]

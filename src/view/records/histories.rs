@@ -31,12 +31,15 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         dataset.inputs().iter().chain(dataset.outputs()).map(|channel| format!("{} [{}]", channel.name, channel.unit));
     let names: Vec<String> = names.collect();
     let gaps = spans(records, palette);
-    time_models_ui(ui, state, palette, commands);
+    ui.horizontal_wrapped(|ui| {
+        time_models_ui(ui, state, palette, commands);
+        spectrogram_choice_ui(ui, page, commands);
+    });
     let models = simulated(state, palette);
     for model in &models {
         model.absence_ui(ui, state, palette);
     }
-    spectrogram_ui(ui, page, flight, commands);
+    spectrogram_ui(ui, page, flight);
     ScrollArea::vertical().id_salt("histories").auto_shrink(false).show(ui, |ui| {
         let rows = names.len().div_ceil(2).max(1);
         let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);
@@ -69,23 +72,24 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
 /// Height of the spectrogram \[pt\].
 const SPECTROGRAM_HEIGHT: f32 = 150.0;
 
-/// The spectrogram of the channel that is chosen for it, below the charts and over the same time.
-fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>, commands: &mut Vec<Command>) {
+/// Whether a spectrogram is shown, and of which input.
+fn spectrogram_choice_ui(ui: &mut Ui, Page { state, palette, .. }: Page<'_>, commands: &mut Vec<Command>) {
+    ui.label(palette.small("spectrogram of"));
+    let hint = "Power over time and frequency: a sweep is a ridge that rises";
+    let of_inputs = state.dataset().inputs().iter().enumerate();
+    let of_inputs = of_inputs.map(|(index, channel)| (Some(index), channel.name.as_str(), hint));
+    let choices: Vec<_> = std::iter::once((None, "none", "Only the channels over time")).chain(of_inputs).collect();
+    let mut wanted = state.records.spectrogram;
+    choice_ui(ui, "Input of the spectrogram", &mut wanted, &choices);
+    if wanted != state.records.spectrogram {
+        commands.push(RecordsCommand::ShowSpectrogram(wanted).into());
+    }
+}
+
+/// The spectrogram of the input that is chosen for it, above the charts and over the same time.
+fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     let Page { state, records, palette } = page;
-    let inputs = state.dataset().inputs();
-    let chosen = state.records.spectrogram;
-    ui.horizontal(|ui| {
-        ui.label(palette.small("spectrogram of"));
-        let hint = "Power over time and frequency: a sweep is a ridge that rises";
-        let none = (None, "none", "Only the channels over time");
-        let of_inputs = inputs.iter().enumerate().map(|(index, channel)| (Some(index), channel.name.as_str(), hint));
-        let choices: Vec<_> = std::iter::once(none).chain(of_inputs).collect();
-        let mut wanted = chosen;
-        choice_ui(ui, "Input of the spectrogram", &mut wanted, &choices);
-        if wanted != chosen {
-            commands.push(RecordsCommand::ShowSpectrogram(wanted).into());
-        }
-    });
+    let (inputs, chosen) = (state.dataset().inputs(), state.records.spectrogram);
     let Some((index, channel)) = chosen.and_then(|index| Some((index, inputs.get(index)?))) else { return };
     let band = records.band.map_or(state.study.settings.band.max(), |band| band[1]);
     let (highest, is_dark) = (2.0 * band, ui.visuals().dark_mode);

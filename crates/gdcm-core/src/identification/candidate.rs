@@ -11,20 +11,16 @@ use crate::executor::{Executor, each};
 use nalgebra::Complex;
 use std::collections::BTreeMap;
 
-/// Order at which poles and past windows are compared.
+/// Order at which poles and past windows are compared at most.
 const RANKING_ORDER: usize = 18;
 /// How many poles and past windows propose models of all orders.
 const KEPT: usize = 2;
 /// Modes beyond this many times the upper end of the band are images of z near -1.
 const FASTEST: f64 = 8.0;
-/// Time between instants is this over the upper end of the band.
-const SPACING: f64 = 1.2;
 /// Share of the whole work that the candidates are.
 const SHARE: f64 = 0.2;
-/// Rows over columns of a data matrix at least.
-const LEAST_ROWS: usize = 2;
-/// How a predictor is made.
-const PREDICTOR: PredictorSettings = PredictorSettings { longest_future: 12, ridge: 1e-8 };
+/// Ridge of the predictor over columns of length one.
+const RIDGE: f64 = 1e-8;
 
 /// What CT-PBSID is run with.
 #[derive(Clone, Debug)]
@@ -37,6 +33,8 @@ pub(super) struct SubspaceSettings {
     pub(super) pasts: Vec<usize>,
     /// Orders, ascending.
     pub(super) orders: Vec<usize>,
+    /// Block rows of the map to the future at most.
+    pub(super) longest_future: usize,
 }
 
 /// The states that one pole and past window propose.
@@ -59,8 +57,10 @@ impl SubspaceSettings {
         likelihood: &Likelihood,
         progress: &Shares,
     ) -> Result<Vec<Candidate>, IdentificationError> {
-        let pasts: Vec<usize> = self.pasts.iter().copied().filter(|&past| self.has_rows_for(segments, past)).collect();
-        let Some(&longest) = pasts.iter().max() else { return Ok(Vec::new()) };
+        let pasts = &self.pasts;
+        let (Some(&longest), Some(order)) = (pasts.iter().max(), self.ranking_order(segments)) else {
+            return Ok(Vec::new());
+        };
         let executor = likelihood.executor;
         let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
         let of_pole = |(k, &pole): (usize, &f64)| {
@@ -69,9 +69,9 @@ impl SubspaceSettings {
             let factor = self.projections(pole, longest).factor(segments, executor);
             let of_past = |&past: &usize| {
                 progress.advance(share, &format!("{told}, past {past}"))?;
-                Ok(self.candidate(&factor, pole, past, segments, likelihood))
+                Ok(self.candidate(&factor, (pole, past), order, segments, likelihood))
             };
-            each(executor, &pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
+            each(executor, pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
         };
         let all = each(executor, self.poles.iter().enumerate(), of_pole).into_iter().collect::<Result<Vec<_>, _>>()?;
         let mut found: Vec<Candidate> = all.into_iter().flatten().flatten().collect();
@@ -104,25 +104,25 @@ impl SubspaceSettings {
         Projections { pole, past, spacing_s: SPACING / self.highest }
     }
 
-    /// Whether the segments give rows enough for a past window.
-    fn has_rows_for(&self, segments: &[Segment], past: usize) -> bool {
-        let channels = segments.first().map_or(0, |segment| segment.inputs.ncols() + segment.outputs.ncols());
-        let slowest = self.poles.iter().copied().fold(f64::INFINITY, f64::min);
-        self.projections(slowest, past).count(segments) >= LEAST_ROWS * (past + 1) * channels
+    /// The order at which poles and past windows are compared: one that the shortest past window has states for.
+    fn ranking_order(&self, segments: &[Segment]) -> Option<usize> {
+        let outputs = segments.first()?.outputs.ncols();
+        let future = self.pasts.iter().min()?.min(&self.longest_future);
+        Some(RANKING_ORDER.min(*self.orders.last()?).min(future * outputs))
     }
 
     fn candidate(
         &self,
         factor: &TriangularFactor,
-        pole: f64,
-        past: usize,
+        (pole, past): (f64, usize),
+        order: usize,
         segments: &[Segment],
         likelihood: &Likelihood,
     ) -> Option<Candidate> {
         let segment = segments.first()?;
         let channels = (segment.inputs.ncols(), segment.outputs.ncols());
-        let subspace = Subspace::new(factor, pole, channels, past, PREDICTOR)?;
-        let order = self.orders.iter().copied().min_by_key(|order| order.abs_diff(RANKING_ORDER))?;
+        let settings = PredictorSettings { longest_future: self.longest_future, ridge: RIDGE };
+        let subspace = Subspace::new(factor, pole, channels, past, settings)?;
         let cost = likelihood.cost(&self.model(&subspace, order)?)?;
         Some(Candidate { pole, past, cost, subspace })
     }
@@ -132,8 +132,9 @@ impl SubspaceSettings {
         without_fast_modes(&subspace.model(order)?.continuous()?, FASTEST * self.highest)
     }
 
+    /// The same in blocks; none where all its modes are far above the band.
     fn model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
-        BlockModel::of(&self.slow(subspace, order)?)
+        BlockModel::of(&self.slow(subspace, order)?).filter(|model| model.order() > 0)
     }
 }
 

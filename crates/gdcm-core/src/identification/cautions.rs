@@ -9,6 +9,21 @@ pub enum IdentificationCaution {
     /// Something in the records themselves.
     #[error(transparent)]
     Records(#[from] RecordCaution),
+    /// The records are shorter than the lower end of the band deserves.
+    #[error(
+        "the longest record lasts {longest_s:.0} s, {periods:.1} periods of {lowest:.2} rad/s: {better_s:.0} s would be better, the \
+         lower end of the band is known less well"
+    )]
+    Short {
+        /// Length of the longest \[s\].
+        longest_s: f64,
+        /// Lower end of the band \[rad/s\].
+        lowest: f64,
+        /// How many periods of it they last.
+        periods: f64,
+        /// Length that would be better \[s\].
+        better_s: f64,
+    },
     /// An input was not moved, or only together with others.
     #[error(
         "{signal} was not swept, or only with another input (partial coherence {partial_coherence:.2}): its column is not \
@@ -74,32 +89,42 @@ pub enum IdentificationCaution {
         /// Its cost per degree of freedom; 1 is adequate.
         cost: f64,
     },
-    /// Without one record the model is another.
-    #[error(
-        "without {name} the model changes {ratio:.0} times more than without another record: look at it, or leave it out"
-    )]
-    DecisiveRecord {
-        /// Which record, counted from 0.
-        record: usize,
-        /// Its name.
-        name: String,
-        /// How much farther the model without it is than those without another (`J` over the median).
-        ratio: f64,
+    /// A record wants another model than the others, or two records each another.
+    #[error("{}", contradiction(records, *contrast, fault.as_ref()))]
+    Contradiction {
+        /// The record, or the two, each with its number counted from 0 and its name.
+        records: Vec<(usize, String)>,
+        /// `F` of the worse; 1 is agreement.
+        contrast: f64,
+        /// What is wrong with the last of them, as far as it can be told.
+        fault: Option<RecordFault>,
     },
-    /// A channel seems to be logged late in one record.
+    /// Gusts and noise went into the inputs by way of the feedback.
+    #[error("{}", fed_back(*level, *share))]
+    Feedback {
+        /// How much of it.
+        level: FeedbackLevel,
+        /// Median share of the response.
+        share: f64,
+        /// Median square over the variance.
+        significance: f64,
+    },
+    /// The model is not what was measured.
     #[error(
-        "{name}: {signal} seems to be logged {:.0} ms {}. That delay can be taken out",
-        1e3 * delay_s.abs(), late_or_early(*delay_s)
+        "the model leaves the measured points of {output}/{input} between {:.1} and {:.1} rad/s: believe the points there, and try another \
+         order or band",
+        band[0],
+        band[1]
     )]
-    Late {
-        /// Which record, counted from 0.
-        record: usize,
-        /// Its name.
-        name: String,
-        /// The channel.
-        signal: Signal,
-        /// How late \[s\]; negative when it is early.
-        delay_s: f64,
+    LeavesPoints {
+        /// The output.
+        output: Signal,
+        /// The input.
+        input: Signal,
+        /// Where \[rad/s\].
+        band: [f64; 2],
+        /// Mean square distance over the variance of the points; 12 is the limit.
+        strength: f64,
     },
     /// The criterion still falls at the highest order tried.
     #[error(
@@ -113,14 +138,16 @@ pub enum IdentificationCaution {
         /// The band that is offered in place of this one \[rad/s\].
         narrower: [f64; 2],
     },
-    /// The model fits what was held out less well than what it was fitted to.
+    /// The model does not predict what was held out.
     #[error(
-        "what was held out fits {ratio:.2} times less well than the records of the fit: the model may be fitted to their noise, \
-                 or the aircraft was flown differently"
+        "what was held out is not predicted: {normalised:.1} times what noise explains though the model may move within its uncertainty \
+         ({raw:.1} as it is). The aircraft was flown differently, or the records do not show enough"
     )]
     HeldOut {
-        /// Cost per degree of freedom on the held-out records over that of the fit.
-        ratio: f64,
+        /// Cost per degree of freedom on the held-out records.
+        raw: f64,
+        /// The same where the model may move within its own uncertainty.
+        normalised: f64,
     },
     /// The records weigh differently because their turbulence does.
     #[error("the records are unlike in noise (by {ratio:.1}): they were weighed accordingly")]
@@ -133,6 +160,18 @@ pub enum IdentificationCaution {
     NotValidated {
         /// Why.
         why: ValidationError,
+    },
+    /// An unstable pole that no line shows.
+    #[error(
+        "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is no finding, and the model \
+         was not simulated in time",
+        pole.norm()
+    )]
+    Unstable {
+        /// The pole \[rad/s\].
+        pole: nalgebra::Complex<f64>,
+        /// Highest line used \[rad/s\].
+        highest: f64,
     },
     /// Responses that are not identified.
     #[error("{} not identified: one standard deviation is over 3 dB", responses_are(pairs))]
@@ -153,6 +192,41 @@ fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
 fn responses_are(pairs: &[[Signal; 2]]) -> String {
     let names: Vec<String> = pairs.iter().map(|[output, input]| format!("{input} to {output}")).collect();
     format!("{} {}", listed(&names), if names.len() == 1 { "is" } else { "are" })
+}
+
+/// Which records contradict which, and what would mend it.
+fn contradiction(records: &[(usize, String)], contrast: f64, fault: Option<&RecordFault>) -> String {
+    let words =
+        |subject: &str| fault.map_or_else(String::new, |fault| format!(" It looks as if in {subject} {fault}."));
+    match records {
+        [(_, one), (_, other)] => format!(
+            "{one} and {other} contradict one another (F {contrast:.0}; 1 is agreement); a third record would tell which is wrong.{}",
+            words(other)
+        ),
+        _ => {
+            let name = records.first().map_or("", |(_, name)| name.as_str());
+            format!(
+                "{name} contradicts the other records (F {contrast:.0}; 1 is agreement).{} Correct it, or leave the record out",
+                words("it")
+            )
+        }
+    }
+}
+
+/// What the feedback does to the models.
+fn fed_back(level: FeedbackLevel, share: f64) -> String {
+    let percent = 100.0 * share;
+    let remedy = "Sweep more strongly, or give the recorded reference that drove the loop (--reference)";
+    match level {
+        FeedbackLevel::TooMuch => format!(
+            "do not use this model: about {percent:.0} % of the measured response is what the feedback makes of gusts and noise, not the \
+             aircraft, however well the model fits. {remedy}"
+        ),
+        _ => format!(
+            "about {percent:.0} % of the measured response is what the feedback makes of gusts and noise: the models are off by some tenths \
+             of a dB. {remedy}"
+        ),
+    }
 }
 
 /// `late` or `early`.
@@ -235,6 +309,45 @@ pub enum RecordCaution {
         /// Their correlation.
         correlation: f64,
     },
+    /// An output stands at its limit.
+    #[error(
+        "{signal} is at its limit for {percent:.1} % of {record}{}: nothing repairs that. Leave the output out, or {}",
+        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
+        if *records > 1 { "these records" } else { "the record" }
+    )]
+    AtLimit {
+        /// Name of the record in which it is most.
+        record: String,
+        /// The output.
+        signal: Signal,
+        /// Share of the samples \[%\].
+        percent: f64,
+        /// Records in which it is too much.
+        records: usize,
+    },
+    /// Outputs stood still while others moved.
+    #[error(
+        "{record}: {} stood still for {seconds:.1} s while other channels moved; that was left out",
+        names(signals)
+    )]
+    Stuck {
+        /// The record's name.
+        record: String,
+        /// The outputs.
+        signals: Vec<Signal>,
+        /// For how long in all \[s\].
+        seconds: f64,
+    },
+    /// An output is logged in coarse steps.
+    #[error(
+        "{signal} is logged in steps of {steps:.1} standard deviations: coarse, though no harm was ever measured of that"
+    )]
+    Coarse {
+        /// The output.
+        signal: Signal,
+        /// Step over the standard deviation.
+        steps: f64,
+    },
     /// An output is a copy of another channel.
     #[error(
         "{copy} is a copy of the {} {of}: leave it out", of.role
@@ -274,8 +387,24 @@ pub(super) fn channel_cautions(
             cautions.push(RecordCaution::SampleHold { signal, percent: 100.0 * share, hold_s });
         }
     }
+    cautions.extend(output_cautions(records, preparation));
     cautions.extend(correlated(segments, preparation));
     cautions
+}
+
+/// The outputs that were stuck in a record, by its gaps.
+pub(super) fn stuck_caution(used: &RecordUse) -> Option<RecordCaution> {
+    let frozen = used.gaps.iter().filter_map(|gap| match &gap.cause {
+        Cause::Frozen { signals } => Some((signals, gap.end_s - gap.start_s)),
+        _ => None,
+    });
+    let (mut all, mut seconds) = (std::collections::BTreeSet::new(), 0.0);
+    for (signals, length_s) in frozen {
+        all.extend(signals.iter().cloned());
+        seconds += length_s;
+    }
+    let signals: Vec<Signal> = all.into_iter().collect();
+    (!signals.is_empty()).then(|| RecordCaution::Stuck { record: used.record.clone(), signals, seconds })
 }
 
 /// Stamps and values of a channel in `record` where both are there.

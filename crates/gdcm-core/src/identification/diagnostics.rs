@@ -1,20 +1,14 @@
 //! What speaks against the recommended model, record by record and channel by channel (M14, section 10).
 
 use super::*;
-use crate::response::median;
-use nalgebra::Complex;
-use std::ops::Range;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
 /// Cost per degree of freedom of a record over that of all above which it is unlike the others.
 const UNLIKE: f64 = 1.5;
-/// Cost per degree of freedom of held-out records over that of the fit, at most.
-const HELD_OUT: f64 = 1.15;
-/// Distance of a model without a record over the median of the others above which the record is named.
-const DECISIVE: f64 = 10.0;
-/// Models without a record among which one can stand out.
-const COMPARED: usize = 5;
+/// Cost per degree of freedom of held-out records, the model moved within its uncertainty, up to which they are predicted well, and
+/// above which they are not (M14.17).
+pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
 
 /// The recommended model and what it is examined with.
 pub(super) struct Diagnostics<'a> {
@@ -26,8 +20,6 @@ pub(super) struct Diagnostics<'a> {
     pub(super) data: &'a PreparedData<'a>,
     /// The model.
     pub(super) fit: &'a Fit,
-    /// The models without each record.
-    pub(super) without: &'a [WithoutRecord],
 }
 
 impl Diagnostics<'_> {
@@ -51,47 +43,10 @@ impl Diagnostics<'_> {
             let name = self.record_name(fit.record);
             cautions.push(IdentificationCaution::UnlikeRecord { record: fit.record, name, cost: fit.cost });
         }
-        if let Some(ratio) = fits.held_out_cost.map(|held_out| held_out / cost).filter(|ratio| *ratio > HELD_OUT) {
-            cautions.push(IdentificationCaution::HeldOut { ratio });
+        if let Some((raw, normalised)) = fits.held_out.filter(|(_, normalised)| *normalised > HELD_OUT[1]) {
+            cautions.push(IdentificationCaution::HeldOut { raw, normalised });
         }
         cautions
-    }
-
-    /// Records without which the model is another.
-    pub(super) fn decisive_records(&self, omegas: &[f64], left_out: &[(usize, usize)]) -> Vec<IdentificationCaution> {
-        let (outputs, inputs) = self.fit.model.d.shape();
-        let pairs = (0..inputs).flat_map(|input| (0..outputs).map(move |output| (output, input)));
-        let pairs: Vec<_> = pairs.filter(|pair| !left_out.contains(pair)).collect();
-        let of = |one: &WithoutRecord| distance(&one.model, &self.fit.model, omegas, &pairs);
-        let distances: Vec<f64> = self.without.iter().map(of).collect();
-        if distances.len() < COMPARED {
-            return Vec::new();
-        }
-        let caution = |(k, one): (usize, &WithoutRecord)| {
-            let others = distances.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, distance)| *distance);
-            let ratio = distances[k] / median(&mut others.collect::<Vec<f64>>());
-            let (record, name) = (one.record, self.record_name(one.record));
-            let stands_out = ratio.is_finite() && ratio > DECISIVE;
-            stands_out.then_some(IdentificationCaution::DecisiveRecord { record, name, ratio })
-        };
-        self.without.iter().enumerate().filter_map(caution).collect()
-    }
-
-    /// The channel that seems to be late in a record that the model does not fit, of several the one that explains most: it
-    /// spoils the models for the others.
-    pub(super) fn late_channel(&self, fits: &[RecordFit]) -> Option<IdentificationCaution> {
-        let fitted = fits.iter().filter(|fit| !fit.held_out);
-        let least = fitted.map(|fit| fit.cost).fold(f64::INFINITY, f64::min);
-        let late = |fit: &RecordFit| {
-            let spectra: Vec<&Spectrum> =
-                self.data.spectra.iter().filter(|spectrum| spectrum.record == fit.record).collect();
-            let model = &self.without.iter().find(|one| one.record == fit.record)?.model;
-            Some((fit.record, channel_delay(&spectra, &self.data.noise, model)?))
-        };
-        let unlike = fits.iter().filter(|fit| !fit.held_out && fit.cost > UNLIKE * least);
-        let (record, late) = unlike.filter_map(late).max_by(|a, b| a.1.gain.total_cmp(&b.1.gain))?;
-        let (name, signal) = (self.record_name(record), self.options.signal(late.role, late.index));
-        Some(IdentificationCaution::Late { record, name, signal, delay_s: late.delay_s })
     }
 
     /// Responses that are not identified, in words.
@@ -104,110 +59,6 @@ impl Diagnostics<'_> {
     }
 }
 
-// Delays of single channels, told by errors of phase that are linear in frequency (M14, section 10).
-//
-// ```text
-// an output logged d late:  Y = e^(-j omega d) Y_true      dE/dd = -j omega e_o Y_o
-// an input logged d late:   U = e^(-j omega d) U_true      dE/dd =  j omega G_j U_j
-// 1  of each channel: d = a'e / a'a over the lines of a record, a = W dE/dd with the transient taken off; the cost falls by d^2 a'a
-// 2  the channel with which it falls most is shifted back by d, and step 1 is repeated for it alone
-// ```
-//
-// The model is one that has not seen the record; a delay of all records alike cannot be told from dynamics.
-
-/// Steps of the iteration.
-const STEPS: usize = 4;
-/// Least share of the cost that a delay explains.
-const LEAST_SHARE: f64 = 0.2;
-/// Least delay over its standard deviation.
-const LEAST_RATIO: f64 = 6.0;
-
-/// A channel that seems to be logged late.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ChannelDelay {
-    /// Input or output.
-    pub(super) role: ChannelSide,
-    /// Which, counted from 0.
-    pub(super) index: usize,
-    /// How late \[s\]; negative when it is early.
-    pub(super) delay_s: f64,
-    /// By how much it lowers the cost.
-    pub(super) gain: f64,
-}
-
-/// The channel of a record whose delay explains most of what `model` leaves of its spectra; none where no delay explains much.
-pub(super) fn channel_delay(
-    spectra: &[&Spectrum],
-    noise: &NoiseCovariance,
-    model: &BlockModel,
-) -> Option<ChannelDelay> {
-    let inputs = model.b.ncols();
-    let channels = inputs + model.c.nrows();
-    let mut shifted: Vec<Spectrum> = spectra.iter().map(|&spectrum| spectrum.clone()).collect();
-    let first = Sums::of(&shifted, noise, model, 0..channels)?;
-    let gain = |channel: usize| first.product[channel].powi(2) / first.square[channel];
-    let channel =
-        (0..channels).filter(|&channel| gain(channel).is_finite()).max_by(|&a, &b| gain(a).total_cmp(&gain(b)))?;
-    let (mut delay_s, mut step) = (0.0, first.product[channel] / first.square[channel]);
-    let (mut cost, mut square) = (first.cost, first.square[channel]);
-    for _ in 0..STEPS {
-        delay_s += step;
-        for spectrum in &mut shifted {
-            advance(spectrum, channel, step);
-        }
-        let last = Sums::of(&shifted, noise, model, channel..channel + 1)?;
-        (cost, square, step) = (last.cost, last.square[0], last.product[0] / last.square[0]);
-    }
-    let share = 1.0 - cost / first.cost;
-    let ratio = delay_s.abs() * square.sqrt();
-    let (role, index) =
-        if channel < inputs { (ChannelSide::Input, channel) } else { (ChannelSide::Output, channel - inputs) };
-    let told = delay_s.is_finite() && share >= LEAST_SHARE && ratio >= LEAST_RATIO;
-    told.then_some(ChannelDelay { role, index, delay_s, gain: first.cost - cost })
-}
-
-/// Moves a channel `seconds` earlier.
-fn advance(spectrum: &mut Spectrum, channel: usize, seconds: f64) {
-    let inputs = spectrum.inputs.nrows();
-    for (k, omega) in spectrum.omega.iter().enumerate() {
-        let turn = Complex::cis(omega * seconds);
-        if channel < inputs {
-            spectrum.inputs[(channel, k)] *= turn;
-        } else {
-            spectrum.outputs[(channel - inputs, k)] *= turn;
-        }
-    }
-}
-
-/// `a'e` and `a'a` of some channels, and the cost.
-struct Sums {
-    product: Vec<f64>,
-    square: Vec<f64>,
-    cost: f64,
-}
-
-impl Sums {
-    /// By differences of residuals, in which the transient is taken off.
-    fn of(spectra: &[Spectrum], noise: &NoiseCovariance, model: &BlockModel, channels: Range<usize>) -> Option<Self> {
-        /// Of 100 rad/s it turns a line by 1e-5: neither rounding nor curvature count.
-        const SMALL_S: f64 = 1e-7;
-        let cost = |spectrum: &Spectrum| SpectralLines::new(spectrum, noise)?.cost(model);
-        let mut sums = Self { product: vec![0.0; channels.len()], square: vec![0.0; channels.len()], cost: 0.0 };
-        for spectrum in spectra {
-            let here = cost(spectrum)?;
-            for (k, channel) in channels.clone().enumerate() {
-                let mut earlier = spectrum.clone();
-                advance(&mut earlier, channel, SMALL_S);
-                let slope = (&here.residual - cost(&earlier)?.residual) / Complex::from(SMALL_S);
-                sums.product[k] += slope.dotc(&here.residual).re;
-                sums.square[k] += slope.norm_squared();
-            }
-            sums.cost += here.cost;
-        }
-        Some(sums)
-    }
-}
-
 // How well a model fits each record and each output.
 
 /// How well the recommended model fits a record.
@@ -217,7 +68,7 @@ pub struct RecordFit {
     pub record: usize,
     /// `J` per degree of freedom; 1 is adequate.
     pub cost: f64,
-    /// Degrees of freedom.
+    /// Real figures less the transients'.
     pub freedom: usize,
     /// Whether the record was held out.
     pub held_out: bool,
@@ -225,27 +76,35 @@ pub struct RecordFit {
 
 /// How well a model fits all records, each record and each output.
 pub(super) struct RecordFits {
-    /// The fit of every record that has degrees of freedom, in the order of the records.
+    /// The fit of every record that has degrees of freedom, in the order of the records. Those of the fit are freed of what the
+    /// parameters took: `J_r / dof_r  N / (N - k)` (M14.13).
     pub(super) records: Vec<RecordFit>,
     /// `J` per degree of freedom of each output over the records of the fit.
     pub(super) outputs: Vec<f64>,
     /// `J` per degree of freedom over the records of the fit.
     pub(super) cost: f64,
-    /// The same over the held-out records, where there are any.
-    pub(super) held_out_cost: Option<f64>,
+    /// The same over the held-out records, where there are any, and where the model may move within its own uncertainty.
+    pub(super) held_out: Option<(f64, f64)>,
 }
 
 impl RecordFits {
     /// The fits of a model; none where a cost is not finite or nothing has degrees of freedom.
-    pub(super) fn of(data: &PreparedData, model: &BlockModel) -> Option<Self> {
+    pub(super) fn of(data: &PreparedData, model: &BlockModel, covariance: &ParameterCovariance) -> Option<Self> {
         let (fitted, held_out) = (data.likelihood.parts(model)?, data.held_out.parts(model)?);
-        let outputs = output_costs(&data.likelihood, model, &fitted);
+        let moved = covariance.moved_cost(&data.held_out, model, &held_out);
+        let all = data.likelihood.freedom(model.order());
+        let spare = all.checked_sub(parameters_of_order(model.order(), model.b.ncols(), model.c.nrows()));
+        let share = all as f64 / spare.filter(|spare| *spare > 0)? as f64;
+        let outputs = output_costs(&data.likelihood, model, &fitted).into_iter().map(|cost| cost * share).collect();
         let mut records = fits_of_records(&data.likelihood, model, &fitted, false);
+        records.iter_mut().for_each(|fit| fit.cost *= share);
         let held_out = fits_of_records(&data.held_out, model, &held_out, true);
-        let (cost, held_out_cost) = (mean_cost(&records)?, mean_cost(&held_out));
+        let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();
+        let of_held_out = mean_cost(&held_out).map(|raw| (raw, moved.map_or(raw, |moved| moved / freedom as f64)));
+        let cost = mean_cost(&records)?;
         records.extend(held_out);
         records.sort_by_key(|fit| fit.record);
-        Some(Self { records, outputs, cost, held_out_cost })
+        Some(Self { records, outputs, cost, held_out: of_held_out })
     }
 }
 

@@ -36,10 +36,16 @@ pub struct Identification {
     pub past: usize,
     /// BIC of every order that was refined, ascending.
     pub criteria: Vec<(usize, f64)>,
-    /// `J` per degree of freedom over the records of the fit; 1 is adequate.
+    /// `J / (N - k)` over the records of the fit, per degree of freedom that the parameters leave; 1 is adequate.
     pub cost: f64,
     /// The same over the held-out records, where there are any.
     pub held_out_cost: Option<f64>,
+    /// The same where the model may move within its own uncertainty: up to 1.3 good, above 2 not predicted (M14.17).
+    pub held_out_normalised: Option<f64>,
+    /// How much of the measured response was fed back (M14.14).
+    pub feedback: Option<Feedback>,
+    /// How far each record of the fit wants another model than the others; empty for one record (M14.16).
+    pub contrasts: Vec<RecordContrast>,
     /// The same of every record that was used, in the order of the records.
     pub record_fits: Vec<RecordFit>,
     /// The same of every output, over the records of the fit.
@@ -88,11 +94,15 @@ fn check(options: &Options) -> Result<(), IdentificationError> {
     if !(lowest.is_finite() && highest.is_finite() && 0.0 < lowest && lowest < highest) {
         return Err(IdentificationError::Band { lowest, highest });
     }
-    let some = !options.orders.is_empty() && !options.poles.is_empty() && !options.pasts.is_empty();
-    let orders = options.orders.iter().all(|order| (1..=HIGHEST_ORDER).contains(order));
-    let pasts = options.pasts.iter().all(|past| (1..=LONGEST_PAST).contains(past));
-    let poles = options.poles.iter().all(|pole| pole.is_finite() && *pole > 0.0);
-    if some && orders && pasts && poles { Ok(()) } else { Err(IdentificationError::Settings) }
+    if options.inputs() == 0 && options.references > 0 {
+        return Err(IdentificationError::OnlyReferences);
+    }
+    let within = |list: &Option<Vec<usize>>, most: usize| {
+        list.as_ref().is_none_or(|list| !list.is_empty() && list.iter().all(|value| (1..=most).contains(value)))
+    };
+    let poles = !options.poles.is_empty() && options.poles.iter().all(|pole| pole.is_finite() && *pole > 0.0);
+    let right = within(&options.orders, HIGHEST_ORDER) && within(&options.pasts, LONGEST_PAST) && poles;
+    if right { Ok(()) } else { Err(IdentificationError::Settings) }
 }
 
 /// Uncertainty, bundle and validation of the recommended model.
@@ -114,26 +124,43 @@ fn report(
     let mut system = NormalSystem::zero(fit.model.parameters());
     systems.iter().for_each(|part| system.add(part));
     let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).ok_or_else(no_model)?;
+    // By way of a reference nothing is fed back, and every record is seen as the same reference shows it.
+    let is_direct = options.references == 0;
+    let feedback =
+        Some(()).filter(|()| is_direct).and_then(|()| Feedback::of(data, &fit.model, options.band, executor));
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
-    let bands = covariance.bands(&fit.model, &neighbours, &omegas, executor).ok_or_else(no_model)?;
+    let bands = covariance.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;
     let not_identified = not_identified(&bands);
 
     progress.next(0.88, "models without each record")?;
     let without = without_each_record(likelihood, fit, &systems);
     progress.next(0.93, "validation")?;
-    let fits = RecordFits::of(data, &fit.model).ok_or_else(no_model)?;
-    let diagnostics = Diagnostics { records, options, data, fit, without: &without };
+    let fits = RecordFits::of(data, &fit.model, &covariance).ok_or_else(no_model)?;
+    let diagnostics = Diagnostics { records, options, data, fit };
     let mut cautions = data.cautions.clone();
     cautions.extend(refinement.cautions.iter().cloned());
-    cautions.extend(diagnostics.adequacy(&fits));
-    cautions.extend(diagnostics.decisive_records(&omegas, &not_identified));
-    cautions.extend(diagnostics.late_channel(&fits.records));
+    let level = feedback.as_ref().map_or(FeedbackLevel::None, Feedback::level);
+    cautions.extend(feedback.as_ref().filter(|_| level > FeedbackLevel::None).map(|of| {
+        let (share, significance) = (of.share, of.significance);
+        IdentificationCaution::Feedback { level, share, significance }
+    }));
+    let mut contrasts = Vec::new();
+    if is_direct {
+        cautions.extend(diagnostics.adequacy(&fits));
+        let first = refinement.before_weighing.as_ref().unwrap_or(fit);
+        let of_records = RecordContrasts::of(&data.likelihood, &data.spectra, first).ok_or_else(no_model)?;
+        cautions.extend(of_records.caution(level > FeedbackLevel::None, &diagnostics));
+        contrasts = of_records.contrasts;
+    }
+    cautions.extend(diagnostics.departures());
     if search.still_falls {
         let narrower = [options.band[0], NARROWER * options.band[1]];
         cautions.push(IdentificationCaution::OrderLimit { order: search.order, narrower });
     }
     cautions.extend(diagnostics.unidentified_pairs(&not_identified));
+    let unstable = fast_unstable_pole(&fit.model, options.highest());
+    cautions.extend(unstable.map(|pole| IdentificationCaution::Unstable { pole, highest: options.highest() }));
 
     let unrefined = &proposal.starts.get(&search.order).ok_or_else(no_model)?.model;
     let model = |name: String, method: &str, model: &BlockModel, without: Option<usize>| {
@@ -152,6 +179,8 @@ fn report(
     }));
     let validation = match data.held_out_segments.as_slice() {
         [] => None,
+        // An unstable pole that no line shows would end the windows after a few samples.
+        _ if unstable.is_some() => None,
         segments => {
             let settings = ValidationSettings::filtered(options.highest());
             let model = data.in_units(&fit.model).ok_or_else(no_model)?;
@@ -171,7 +200,10 @@ fn report(
         past: proposal.past,
         criteria: search.criteria.iter().map(|(order, value)| (*order, *value)).collect(),
         cost: fits.cost,
-        held_out_cost: fits.held_out_cost,
+        held_out_cost: fits.held_out.map(|(raw, _)| raw),
+        held_out_normalised: fits.held_out.map(|(_, normalised)| normalised),
+        feedback,
+        contrasts,
         record_fits: fits.records,
         output_costs: fits.outputs,
         validation,

@@ -129,16 +129,6 @@ impl Projections {
         }
         factor
     }
-
-    /// Rows that the segments give.
-    pub(super) fn count(&self, segments: &[Segment]) -> usize {
-        let of_segment = |segment: &Segment| {
-            let duration = segment.inputs.nrows() as f64 * segment.sample_time_s;
-            let end = ((2.0 * self.past as f64 + 4.0) / self.pole).min(LARGEST_END * duration);
-            ((duration - end) / self.spacing_s.max(segment.sample_time_s)) as usize
-        };
-        segments.iter().map(of_segment).sum()
-    }
 }
 
 /// Takes what `[1, i]` explains off every column.

@@ -123,6 +123,38 @@ impl SpectralLines {
                 imaginary[(row + o, order)] = y.im - imaginary[(row + o, order)];
             }
         }
+        self.eliminated(real, imaginary)
+    }
+
+    /// A whitened column, outputs x lines, without what the transient of `model` and drifts make of it; none where that is not finite.
+    pub(super) fn without_transient(
+        &self,
+        model: &BlockModel,
+        column: &DMatrix<Complex<f64>>,
+    ) -> Option<DMatrix<Complex<f64>>> {
+        let (outputs, order) = (self.outputs.nrows(), model.order());
+        let mut real = DMatrix::zeros(column.len(), order + 1);
+        let mut imaginary = real.clone();
+        let mut cr = vec![Complex::default(); outputs * order];
+        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
+            model.output_resolvent(omega, &mut cr);
+            for (state, values) in cr.chunks_exact(outputs).enumerate() {
+                whiten(weight, values, |o, value| {
+                    real[(k * outputs + o, state)] = value.re;
+                    imaginary[(k * outputs + o, state)] = value.im;
+                });
+            }
+        }
+        for (row, value) in column.iter().enumerate() {
+            (real[(row, order)], imaginary[(row, order)]) = (value.re, value.im);
+        }
+        Some(self.eliminated(real, imaginary)?.residual)
+    }
+
+    /// What is left of the last column when drifts and the columns before it, the transient's, are eliminated.
+    fn eliminated(&self, mut real: DMatrix<f64>, mut imaginary: DMatrix<f64>) -> Option<SegmentCost> {
+        let (outputs, lines) = self.outputs.shape();
+        let order = real.ncols() - 1;
         project_out(&self.constant, &mut real);
         project_out(&self.drift, &mut imaginary);
         let mut gram = real.transpose() * &real;

@@ -6,14 +6,14 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 /// Terms of a local polynomial: 1, x, x^2.
 pub(super) const TERMS: usize = 3;
+/// Terms where all lines together are too few for these: 1, x.
+const FEWER_TERMS: usize = 2;
 /// The least half width of a window of lines \[rad/s\], and over its centre (M14, 2).
 const HALF_WIDTH: (f64, f64) = (0.45, 0.2);
-/// A window with too few lines is widened by this factor.
-const WIDER: f64 = 1.2;
-/// SpectralLines beyond the unknowns and the outputs that a window has at least.
-const SPARE_LINES: usize = 6;
-/// A window of this half width \[rad/s\] must hold the lines that a single record needs, or the records are too short (M14, 10).
-const FAIR_HALF_WIDTH: f64 = 1.0;
+/// A window with too few lines is widened by the first factor, then by the second until they are enough (M14.12).
+const WIDER: (f64, f64) = (1.2, 1.05);
+/// SpectralLines beyond the unknowns and the outputs that a window has at least, with three terms and with two (M14.12).
+const SPARE_LINES: (usize, usize) = (6, 4);
 /// Height of the ridge over the length of a column; it bounds the estimate where inputs are copies of each other.
 const RIDGE: f64 = 1e-9;
 
@@ -32,27 +32,16 @@ pub enum LocalPolynomialError {
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
     #[error("the spectra hold values that are not finite")]
     NotFinite,
-    /// Too few lines around a frequency.
+    /// Fewer lines in all than a polynomial of the first degree takes.
     #[error(
-        "the records are too short: {lines} spectral lines around {omega:.2} rad/s where {needed} are needed. \
-         A record should last at least {shortest_s:.0} s, better {better_s:.0} s, or the band should begin higher",
-        shortest_s = shortest_s(*omega),
-        better_s = 2.5 * shortest_s(*omega)
+        "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
     )]
     TooFewLines {
-        /// Centre of the window \[rad/s\].
-        omega: f64,
-        /// SpectralLines in it, over all records.
+        /// SpectralLines over all records.
         lines: usize,
         /// SpectralLines it takes.
         needed: usize,
     },
-}
-
-/// The shortest record \[s\] for which a response at `omega` \[rad/s\], half the lower end of the band, can be estimated: two
-/// periods of the lower end of the band (M14, 10).
-fn shortest_s(omega: f64) -> f64 {
-    std::f64::consts::TAU / omega
 }
 
 /// The response at each of `omegas` \[rad/s\] from the lines of all segments together (M14, 2; after Pintelon, Schoukens,
@@ -63,7 +52,8 @@ fn shortest_s(omega: f64) -> f64 {
 /// ```text
 /// Y = (G0 + G1 x + G2 x^2) U + (t0 + t1 x + t2 x^2)_r + V
 ///
-///   h = max(0.45, 0.2 omega), times 1.2 until there are lines enough
+///   h = max(0.45, 0.2 omega), times 1.2 once and then times 1.05 until there are 3 inputs + 3 records + outputs + 6 lines;
+///   a record with fewer than four lines there does not count; where all lines are too few, the terms in x^2 are left out
 ///   of each record   A = [U, x U, x^2 U] and B = Y, less their projection on [1, x, x^2]
 ///   [A B] = Q R, all records stacked;    R = [R11 R12; 0 R22]
 ///   G0 = first columns of R11^-1 R12,    Cv = Re(R22^H R22) / freedom,    var G0 = Cv (R11^H R11)^-1
@@ -77,6 +67,19 @@ pub fn local_polynomial(
     omegas: &[f64],
     executor: &dyn Executor,
 ) -> Result<ResponseEstimate, LocalPolynomialError> {
+    let fits = local_fits(spectra, omegas, HALF_WIDTH.1, executor)?;
+    let mut points: Vec<EstimatePoint> = each(executor, &fits, LocalFit::estimate);
+    points.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+    Ok(ResponseEstimate { points })
+}
+
+/// The local polynomials around each of `omegas`, `share` the half width of a window over its centre; see [`local_polynomial`].
+pub(super) fn local_fits(
+    spectra: &[Spectrum],
+    omegas: &[f64],
+    share: f64,
+    executor: &dyn Executor,
+) -> Result<Vec<LocalFit>, LocalPolynomialError> {
     let first = spectra.first().ok_or(LocalPolynomialError::Nothing)?;
     let channels = |s: &Spectrum| (s.inputs.nrows(), s.outputs.nrows());
     if omegas.is_empty() || first.inputs.nrows() == 0 || first.outputs.nrows() == 0 {
@@ -90,103 +93,170 @@ pub fn local_polynomial(
     if !finite || !omegas.iter().all(|w| w.is_finite() && *w > 0.0) {
         return Err(LocalPolynomialError::NotFinite);
     }
-    let point = |&omega: &f64| Ok(estimate(spectra, &Window::around(spectra, omega)?));
-    let mut points = each(executor, omegas, point).into_iter().collect::<Result<Vec<_>, LocalPolynomialError>>()?;
-    points.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-    Ok(ResponseEstimate { points })
-}
-
-/// Whether the lines around `omega` \[rad/s\] are enough; false where there are no spectra.
-pub(super) fn is_measurable(spectra: &[Spectrum], omega: f64) -> bool {
-    !spectra.is_empty() && Window::around(spectra, omega).is_ok()
+    let fit = |&omega: &f64| Ok(LocalFit::of(spectra, Window::around(spectra, omega, share)?));
+    each(executor, omegas, fit).into_iter().collect()
 }
 
 /// The lines around a frequency.
 struct Window {
     omega: f64,
     half_width: f64,
-    /// Of each spectrum the first line inside and the first one beyond.
+    /// Terms of the polynomials.
+    terms: usize,
+    /// Of each spectrum the first line inside and the first one beyond; as one where the spectrum has too few.
     lines: Vec<(usize, usize)>,
-    /// SpectralLines inside, over all spectra.
+    /// SpectralLines inside, over all spectra that count.
     count: usize,
-    /// Columns that the records' transients take: three each, or as many as the record has lines.
+    /// Columns that the records' transients take.
     transients: usize,
 }
 
 impl Window {
-    /// The window around `omega`, as wide as it must be.
-    fn around(spectra: &[Spectrum], omega: f64) -> Result<Self, LocalPolynomialError> {
+    /// The window around `omega`, as wide as it must be: the response is never refused for its width (M14.12).
+    fn around(spectra: &[Spectrum], omega: f64, share: f64) -> Result<Self, LocalPolynomialError> {
+        let with = |terms| Self::with_terms(spectra, omega, share, terms);
+        with(TERMS).or_else(|_| with(FEWER_TERMS))
+    }
+
+    fn with_terms(spectra: &[Spectrum], omega: f64, share: f64, terms: usize) -> Result<Self, LocalPolynomialError> {
         let first = &spectra[0];
         let (inputs, outputs) = (first.inputs.nrows(), first.outputs.nrows());
-        let all: usize = spectra.iter().map(|s| s.omega.len()).sum();
-        let beside_transients = TERMS * inputs + outputs + SPARE_LINES;
-        let mut window = Self::of_width(spectra, omega, HALF_WIDTH.0.max(HALF_WIDTH.1 * omega));
+        let spare = if terms == TERMS { SPARE_LINES.0 } else { SPARE_LINES.1 };
+        let all: Vec<f64> =
+            spectra.iter().flat_map(|s| s.omega.first().into_iter().chain(s.omega.last()).copied()).collect();
+        let farthest = all.iter().map(|line| (line - omega).abs()).fold(0.0, f64::max);
+        let (mut half_width, mut wider) = (HALF_WIDTH.0.max(share * omega), WIDER.0);
         loop {
-            let needed = beside_transients + window.transients;
-            if window.count >= needed {
+            let window = Self::of_width(spectra, omega, half_width, terms);
+            let needed = terms * inputs + window.transients + outputs + spare;
+            // A window without a record that counts needs one.
+            if window.transients > 0 && window.count >= needed {
                 return Ok(window);
             }
-            let short = window.half_width >= FAIR_HALF_WIDTH && window.count < beside_transients + TERMS;
-            if short || window.count == all {
-                return Err(LocalPolynomialError::TooFewLines { omega, lines: window.count, needed });
+            if half_width >= farthest {
+                return Err(LocalPolynomialError::TooFewLines { lines: window.count, needed });
             }
-            window = Self::of_width(spectra, omega, WIDER * window.half_width);
+            half_width *= wider;
+            wider = WIDER.1;
         }
     }
 
-    fn of_width(spectra: &[Spectrum], omega: f64, half_width: f64) -> Self {
+    fn of_width(spectra: &[Spectrum], omega: f64, half_width: f64, terms: usize) -> Self {
         let inside = |s: &Spectrum| {
             let from = s.omega.partition_point(|&w| w < omega - half_width);
-            (from, s.omega.partition_point(|&w| w <= omega + half_width).max(from))
+            let to = s.omega.partition_point(|&w| w <= omega + half_width).max(from);
+            if to - from > terms { (from, to) } else { (from, from) }
         };
         let lines: Vec<_> = spectra.iter().map(inside).collect();
         let count = lines.iter().map(|(from, to)| to - from).sum();
-        let transients = lines.iter().map(|(from, to)| (to - from).min(TERMS)).sum();
-        Self { omega, half_width, lines, count, transients }
+        let transients = terms * lines.iter().filter(|(from, to)| to > from).count();
+        Self { omega, half_width, terms, lines, count, transients }
     }
 }
 
-/// The estimate from the lines in `window`; see [`local_polynomial`].
-fn estimate(spectra: &[Spectrum], window: &Window) -> EstimatePoint {
-    let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
-    let unknowns = TERMS * inputs;
-    let freedom = window.count - window.transients - unknowns;
-    let (rows, power) = regression(spectra, window);
-    let r = rows.qr().unpack_r();
+/// Local polynomials fitted to the lines of one window.
+pub(super) struct LocalFit {
+    window: Window,
+    /// The triangular factor of `[A B]`.
+    r: DMatrix<Complex<f64>>,
+    inputs: usize,
+    outputs: usize,
+    /// Sum of the power of the lines of each output.
+    power: DVector<f64>,
+    /// Lines less unknowns.
+    pub(super) freedom: usize,
+}
 
-    let residual = r.view((unknowns, unknowns), (outputs, outputs)).clone_owned();
-    let noise = (residual.adjoint() * &residual).map(|c| c.re / freedom as f64);
-    let square = |column: usize, from: usize| r.column(column).rows_range(from..).norm_squared();
-    let left: Vec<f64> = (0..outputs).map(|o| square(unknowns + o, unknowns)).collect();
-    let coherence = DVector::from_fn(outputs, |o, _| explained(left[o], square(unknowns + o, 0)));
-
-    let r11 = r.view((0, 0), (unknowns, unknowns));
-    // The ridge keeps the diagonal away from 0; the solutions are zero, not missing, if ever it did not.
-    let solve = |right: DMatrix<Complex<f64>>| r11.solve_upper_triangular(&right);
-    let theta = solve(r.view((0, unknowns), (unknowns, outputs)).clone_owned());
-    let response = theta.map_or_else(|| DMatrix::zeros(outputs, inputs), |theta| theta.rows(0, inputs).transpose());
-    let inverse = solve(DMatrix::identity(unknowns, unknowns));
-    let spread = |i: usize| inverse.as_ref().map_or(0.0, |inverse| inverse.row(i).norm_squared());
-    let variance = DMatrix::from_fn(outputs, inputs, |o, i| noise[(o, o)] * spread(i));
-
-    let mut partial_coherence = DMatrix::zeros(outputs, inputs);
-    for i in 0..inputs {
-        let without = left_without(&r, i, inputs, outputs);
-        (0..outputs).for_each(|o| partial_coherence[(o, i)] = explained(left[o], without[o]));
+impl LocalFit {
+    fn of(spectra: &[Spectrum], window: Window) -> Self {
+        let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
+        let freedom = window.count - window.transients - window.terms * inputs;
+        let (rows, power) = regression(spectra, &window);
+        Self { r: rows.qr().unpack_r(), inputs, outputs, power, freedom, window }
     }
-    let singular = r.view((0, 0), (inputs, inputs)).clone_owned().singular_values();
-    let condition = (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2);
-    EstimatePoint {
-        omega: window.omega,
-        response,
-        variance,
-        noise,
-        power: power / window.count as f64,
-        coherence,
-        partial_coherence,
-        condition,
-        half_width: window.half_width,
-        freedom,
+
+    fn unknowns(&self) -> usize {
+        self.window.terms * self.inputs
+    }
+
+    /// The centre \[rad/s\].
+    pub(super) fn omega(&self) -> f64 {
+        self.window.omega
+    }
+
+    /// \[rad/s\].
+    pub(super) fn half_width(&self) -> f64 {
+        self.window.half_width
+    }
+
+    /// Mean power of the lines of each output.
+    pub(super) fn power(&self) -> DVector<f64> {
+        &self.power / self.window.count as f64
+    }
+
+    /// `Cov V` of a line, outputs x outputs.
+    pub(super) fn covariance(&self) -> DMatrix<Complex<f64>> {
+        let residual = self.r.view((self.unknowns(), self.unknowns()), (self.outputs, self.outputs));
+        (residual.adjoint() * residual).map(|value| value.conj() / self.freedom as f64)
+    }
+
+    /// `R11^-1` times something; zero, not missing, where it has none: the ridge keeps the diagonal away from 0.
+    fn solve(&self, right: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
+        let r11 = self.r.view((0, 0), (self.unknowns(), self.unknowns()));
+        r11.solve_upper_triangular(right).unwrap_or_else(|| right.map(|_| Complex::default()))
+    }
+
+    /// `G0`, outputs x inputs.
+    pub(super) fn response(&self) -> DMatrix<Complex<f64>> {
+        let unknowns = self.unknowns();
+        let theta = self.solve(&self.r.view((0, unknowns), (unknowns, self.outputs)).clone_owned());
+        theta.rows(0, self.inputs).transpose()
+    }
+
+    /// The block of `(A'A)^-1` that belongs to `G0`, inputs x inputs.
+    pub(super) fn spread(&self) -> DMatrix<Complex<f64>> {
+        let unknowns = self.unknowns();
+        let inverse = self.solve(&DMatrix::identity(unknowns, unknowns));
+        inverse.rows(0, self.inputs) * inverse.rows(0, self.inputs).adjoint()
+    }
+
+    /// `|B|^2` of each output from row `from` of the factor on.
+    fn squares(&self, from: usize) -> Vec<f64> {
+        let column = |o: usize| self.r.column(self.unknowns() + o).rows_range(from..).norm_squared();
+        (0..self.outputs).map(column).collect()
+    }
+
+    /// Multiple coherence of each output.
+    pub(super) fn coherence(&self) -> Vec<f64> {
+        let (left, all) = (self.squares(self.unknowns()), self.squares(0));
+        left.into_iter().zip(all).map(|(left, all)| explained(left, all)).collect()
+    }
+
+    /// The estimate; see [`local_polynomial`].
+    fn estimate(&self) -> EstimatePoint {
+        let (inputs, outputs) = (self.inputs, self.outputs);
+        let noise = self.covariance().map(|value| value.re);
+        let spread = self.spread();
+        let left = self.squares(self.unknowns());
+        let mut partial_coherence = DMatrix::zeros(outputs, inputs);
+        for i in 0..inputs {
+            let without = left_without(&self.r, i, (inputs, outputs), self.window.terms);
+            (0..outputs).for_each(|o| partial_coherence[(o, i)] = explained(left[o], without[o]));
+        }
+        let singular = self.r.view((0, 0), (inputs, inputs)).clone_owned().singular_values();
+        let condition = (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2);
+        EstimatePoint {
+            omega: self.omega(),
+            response: self.response(),
+            variance: DMatrix::from_fn(outputs, inputs, |o, i| noise[(o, o)] * spread[(i, i)].re),
+            noise,
+            power: self.power(),
+            coherence: DVector::from_vec(self.coherence()),
+            partial_coherence,
+            condition,
+            half_width: self.half_width(),
+            freedom: self.freedom,
+        }
     }
 }
 
@@ -198,7 +268,7 @@ fn explained(left: f64, all: f64) -> f64 {
 /// The rows `[A B]` of all records with the ridge below them, and the sum of `|Y|^2` of each output.
 fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, DVector<f64>) {
     let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
-    let unknowns = TERMS * inputs;
+    let (terms, unknowns) = (window.terms, window.terms * inputs);
     let mut rows = DMatrix::zeros(window.count + unknowns, unknowns + outputs);
     let mut power = DVector::zeros(outputs);
     let mut top = 0;
@@ -207,16 +277,21 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
         for (k, x) in x.iter().enumerate() {
             let (input, output) = (spectrum.inputs.column(from + k), spectrum.outputs.column(from + k));
             for (i, u) in input.iter().enumerate() {
-                (rows[(top + k, i)], rows[(top + k, inputs + i)], rows[(top + k, 2 * inputs + i)]) =
-                    (*u, u * *x, u * (x * x));
+                let mut term = *u;
+                for power in 0..terms {
+                    rows[(top + k, power * inputs + i)] = term;
+                    term *= *x;
+                }
             }
             for (o, y) in output.iter().enumerate() {
                 rows[(top + k, unknowns + o)] = *y;
                 power[o] += y.norm_sqr();
             }
         }
-        // An orthonormal basis of 1, x, x^2; a record with fewer than three lines has as many vectors as lines.
-        let powers = DMatrix::from_fn(x.len(), TERMS.min(x.len()), |line, power| x[line].powi(power as i32));
+        if x.is_empty() {
+            continue;
+        }
+        let powers = DMatrix::from_fn(x.len(), terms, |line, power| x[line].powi(power as i32));
         let transient = powers.qr().q().map(Complex::from);
         let mut of_record = rows.rows_mut(top, x.len());
         let explained = &transient * transient.ad_mul(&of_record);
@@ -230,12 +305,11 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
     (rows, power)
 }
 
-/// `|V|^2` of each output when input `i` is left out: the triangular factor `r` without its three columns, made triangular
-/// again.
-fn left_without(r: &DMatrix<Complex<f64>>, i: usize, inputs: usize, outputs: usize) -> Vec<f64> {
-    let unknowns = TERMS * inputs;
+/// `|V|^2` of each output when input `i` is left out: the triangular factor `r` without its columns, made triangular again.
+fn left_without(r: &DMatrix<Complex<f64>>, i: usize, (inputs, outputs): (usize, usize), terms: usize) -> Vec<f64> {
+    let unknowns = terms * inputs;
     let kept: Vec<usize> = (0..unknowns + outputs).filter(|&c| c >= unknowns || c % inputs != i).collect();
     let smaller = r.select_columns(&kept).qr().unpack_r();
-    let from = unknowns - TERMS;
+    let from = unknowns - terms;
     (0..outputs).map(|o| smaller.column(from + o).rows_range(from..).norm_squared()).collect()
 }

@@ -67,6 +67,13 @@ pub(super) fn normal_systems(
     each(likelihood.executor, segments, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
 }
 
+/// `J'd` of one segment for the column `d` that stands in the place of the residual of `part`, its transient taken off.
+pub(super) fn gradient_along(lines: &SpectralLines, model: &BlockModel, part: &SegmentCost) -> DVector<f64> {
+    let mut gram = Gram::new(lines, model, part);
+    gram.add_gradient();
+    gram.gradient
+}
+
 /// The vectors and scalars of one segment, and the Gram matrix that comes of them.
 ///
 /// Columns are numbered: the parameters, then tau, c1, c0.

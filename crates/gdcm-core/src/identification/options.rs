@@ -10,14 +10,16 @@ pub struct Options {
     pub band: [f64; 2],
     /// The channels, and how they are prepared.
     pub preparation: Preparation,
+    /// How many of the inputs, the last ones, are no inputs of the model but recorded references that drove the loop from outside (M14.15).
+    pub references: usize,
     /// Records that no model is fitted to, counted from 0: they judge the model.
     pub held_out: Vec<usize>,
-    /// Orders that are tried.
-    pub orders: Vec<usize>,
+    /// Orders that are tried; none: those that the records can carry (M14.13).
+    pub orders: Option<Vec<usize>>,
     /// Laguerre poles over the upper end of the band.
     pub poles: Vec<f64>,
-    /// Past windows: Laguerre projections that predict the next.
-    pub pasts: Vec<usize>,
+    /// Past windows: Laguerre projections that predict the next; none: those that the records can carry (M14.13).
+    pub pasts: Option<Vec<usize>>,
 }
 
 impl Options {
@@ -27,11 +29,17 @@ impl Options {
         Self {
             band,
             preparation,
+            references: 0,
             held_out: Vec::new(),
-            orders: (8..=24).step_by(2).collect(),
+            orders: None,
             poles: vec![0.375, 0.54, 0.75],
-            pasts: vec![8, 10, 12, 16],
+            pasts: None,
         }
+    }
+
+    /// Inputs of the model.
+    pub(super) fn inputs(&self) -> usize {
+        self.preparation.inputs.len().saturating_sub(self.references)
     }
 
     /// Names of the records that models are fitted to, but for the one of the number `without`.
@@ -77,12 +85,34 @@ pub enum IdentificationError {
     #[error(transparent)]
     Measurement(#[from] LocalPolynomialError),
     /// The records are too short for the lower end of the band, and would do for a higher one.
-    #[error("{why}. They are long enough for a band from {lowest:.2} rad/s on")]
+    #[error(
+        "the longest record lasts {longest_s:.0} s: {lowest:.2} rad/s needs {needed_s:.1} s, better {better_s:.0} s. From \
+         {enough:.2} rad/s on the records would do"
+    )]
     TooShort {
-        /// Where there are too few lines.
-        why: LocalPolynomialError,
-        /// Lower end of the band for which there are enough \[rad/s\].
+        /// Length of the longest \[s\].
+        longest_s: f64,
+        /// Lower end of the band \[rad/s\].
         lowest: f64,
+        /// Length that it takes \[s\]: 1.5 periods.
+        needed_s: f64,
+        /// Length that is better \[s\]: 5 periods, or 3 an input where several are moved in one record.
+        better_s: f64,
+        /// Lower end of the band for which the records are long enough \[rad/s\].
+        enough: f64,
+    },
+    /// Fewer figures than even a model of the first order takes.
+    #[error(
+        "the lines of the records in the band are {figures} real figures, and {needed} are needed, 5 for each of the {unknowns} \
+         unknowns of a model of order 1: log longer or more records, widen the band, or leave out channels"
+    )]
+    TooFewFigures {
+        /// Real figures.
+        figures: usize,
+        /// How many it takes.
+        needed: usize,
+        /// Unknowns of a model of order 1.
+        unknowns: usize,
     },
     /// The band is no band.
     #[error(
@@ -113,6 +143,9 @@ pub enum IdentificationError {
          and Laguerre poles greater than 0"
     )]
     Settings,
+    /// All inputs are references.
+    #[error("every input is given as a reference: at least one input of the model has to be left")]
+    OnlyReferences,
     /// A held-out record is not there.
     #[error("record {} is to be held out, but there are only {records}", record + 1)]
     HeldOutMissing {
@@ -136,7 +169,7 @@ pub enum IdentificationError {
     /// No model could be made.
     #[error(
         "no model came of {lines} spectral lines in {seconds:.0} s of records: log longer or more records, \
-         lower the least order, or leave out channels"
+         widen the band, or leave out channels"
     )]
     NoModel {
         /// SpectralLines of all records.

@@ -321,6 +321,7 @@ pub fn prepare(
     if !constant.is_empty() {
         return Err(PreparationError::Constant { signals: constant });
     }
+    cautions.extend(uses.iter().filter_map(stuck_caution));
     cautions.extend(channel_cautions(records, &segments, preparation));
     Ok(Prepared { segments, records: uses, cautions })
 }

@@ -3,11 +3,14 @@
 use super::*;
 use crate::executor::Executor;
 use nalgebra::DMatrix;
+use std::f64::consts::TAU;
 
 /// Points of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// SpectralLines for the measured response reach this factor beyond those used, at both ends.
+/// SpectralLines for the measured response reach this factor above those used.
 const BEYOND: f64 = 1.3;
+/// Lines of a segment are used from its second one up: the first holds its drift (M14.12).
+const FIRST_LINE: f64 = 1.5;
 /// Condition number of the inputs' correlations above which one is a copy of the others.
 const COPY: f64 = 1e9;
 
@@ -19,18 +22,22 @@ pub(super) struct PreparedData<'a> {
     pub(super) scales: Scales,
     /// Segments to fit, low-passed for the projections.
     pub(super) segments: Vec<Segment>,
+    /// The same as they are.
+    pub(super) unfiltered: Vec<Segment>,
+    /// Which lines the measured response is made of.
+    pub(super) lines: LineRange,
     /// Held-out segments in the units of the records.
     pub(super) held_out_segments: Vec<Segment>,
     /// SpectralLines to fit.
     pub(super) spectra: Vec<Spectrum>,
     /// The response without a model.
     pub(super) measured: ResponseEstimate,
-    /// The noise that it leaves.
-    pub(super) noise: NoiseCovariance,
     /// The cost over the records of the fit.
     pub(super) likelihood: Likelihood<'a>,
     /// The cost over the held-out records.
     pub(super) held_out: Likelihood<'a>,
+    /// Highest line used \[rad/s\].
+    pub(super) highest: f64,
     /// What speaks against the records.
     pub(super) cautions: Vec<IdentificationCaution>,
 }
@@ -48,8 +55,11 @@ impl<'a> PreparedData<'a> {
         }
         let prepared = prepare(records, &options.preparation, executor)?;
         check_sampling(&prepared.segments, options)?;
-        let (held_out_segments, segments): (Vec<Segment>, Vec<Segment>) =
+        let (mut held_out_segments, mut segments): (Vec<Segment>, Vec<Segment>) =
             prepared.segments.into_iter().partition(|segment| options.held_out.contains(&segment.record));
+        held_out_segments.iter_mut().for_each(|segment| drop(split_references(segment, options.references)));
+        let references: Vec<DMatrix<f64>> =
+            segments.iter_mut().map(|segment| split_references(segment, options.references)).collect();
         if segments.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
@@ -60,25 +70,46 @@ impl<'a> PreparedData<'a> {
 
         progress.next(0.02, "measured response")?;
         let (lowest, highest) = (options.lowest(), options.highest());
-        let between = |segments: &[Segment], highest: f64| {
-            let lines =
-                spectra(segments, highest, executor).into_iter().map(|lines| lines.between(lowest / BEYOND, highest));
-            lines.filter(|lines| !lines.omega.is_empty()).collect::<Vec<_>>()
+        let lines = LineRange { lowest, highest: BEYOND * highest };
+        let wide = lines.of(&segments, executor);
+        let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
+        let length = RecordLength::of(&segments, options);
+        length.check(&narrow)?;
+        let first = wide.iter().filter_map(|lines| lines.omega.first().copied()).fold(highest, f64::min);
+        let (measured, narrow) = if options.references == 0 {
+            (local_polynomial(&wide, &log_spaced(first, highest, MEASURED_POINTS), executor)?, narrow)
+        } else {
+            let driven = segments.iter().zip(references).map(|(segment, reference)| driven(segment, reference));
+            let driven: Vec<Segment> = driven.collect();
+            let scales = Scales::of(&driven)?;
+            let seen = lines.of(&driven.iter().map(|segment| scales.scaled(segment)).collect::<Vec<_>>(), executor);
+            let outputs = options.preparation.outputs.len();
+            let instrument = Instrument::of(&seen, [lowest, highest], outputs, executor)?;
+            (instrument.measured, instrument.spectra)
         };
-        let wide = between(&segments, BEYOND * highest);
-        let omegas = log_spaced(lowest, highest, MEASURED_POINTS);
-        let measured = local_polynomial(&wide, &omegas, executor).map_err(|why| unmeasured(why, &wide, &omegas))?;
         let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
         let likelihood = |spectra: &[Spectrum]| {
             let segments: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
             segments.map(|segments| Likelihood { segments, executor }).ok_or(IdentificationError::OutputsDepend)
         };
-        let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
-        let (fit, held_out) = (likelihood(&narrow)?, likelihood(&between(&scaled(&held_out_segments), highest))?);
+        let (fit, held_out) = (
+            likelihood(&narrow)?,
+            likelihood(&LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor))?,
+        );
 
         progress.next(0.07, "low-pass")?;
         let cut_off = CutOff::choose(&segments, highest, executor);
-        let mut cautions: Vec<_> = prepared.cautions.into_iter().map(IdentificationCaution::Records).collect();
+        let is_of_model = |caution: &RecordCaution| match caution {
+            // A reference may well move as an input does.
+            RecordCaution::MovedTogether { signals, .. } => {
+                signals.iter().all(|signal| signal.index < options.inputs())
+            }
+            RecordCaution::Copy { of, .. } => of.role == ChannelSide::Output || of.index < options.inputs(),
+            _ => true,
+        };
+        let of_records = prepared.cautions.into_iter().filter(is_of_model);
+        let mut cautions: Vec<_> = of_records.map(IdentificationCaution::Records).collect();
+        cautions.extend(length.caution());
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
         cautions.extend(band_caution(&measured, options));
@@ -86,14 +117,37 @@ impl<'a> PreparedData<'a> {
             record_uses: prepared.records,
             scales,
             segments: cut_off.apply(&segments, executor),
+            unfiltered: segments,
+            lines,
             held_out_segments,
             spectra: narrow,
             measured,
-            noise,
             likelihood: fit,
             held_out,
+            highest,
             cautions,
         })
+    }
+
+    /// What CT-PBSID is run with: what the options say, and where they say nothing what the records can carry (M14.13).
+    pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
+        let (inputs, outputs) = (self.scales.inputs.len(), self.scales.outputs.len());
+        let lines: usize = self.spectra.iter().map(|spectrum| spectrum.omega.len()).sum();
+        let seconds: f64 = self.spectra.iter().map(|spectrum| spectrum.duration_s).sum();
+        let figures = 2 * outputs * lines.saturating_sub(self.spectra.len());
+        let extent = Extent { inputs, outputs, figures, radians: seconds * options.band[1] };
+        let pasts = options.pasts.clone().unwrap_or_else(|| extent.pasts());
+        let longest = pasts.iter().copied().max().unwrap_or_default();
+        let mut orders = options.orders.clone().unwrap_or_else(|| extent.orders(longest));
+        orders.sort_unstable();
+        orders.dedup();
+        SubspaceSettings {
+            highest: options.band[1],
+            poles: options.poles.iter().map(|pole| pole * options.band[1]).collect(),
+            pasts,
+            orders,
+            longest_future: extent.longest_future(),
+        }
     }
 
     /// A model in the units of the records: the response of a pair is its scaled one times output over input.
@@ -119,6 +173,38 @@ impl<'a> PreparedData<'a> {
     }
 }
 
+/// Takes the last `references` inputs off a segment, and gives them.
+fn split_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
+    let inputs = segment.inputs.ncols().saturating_sub(references);
+    let taken = segment.inputs.columns(inputs, segment.inputs.ncols() - inputs).into_owned();
+    segment.inputs = segment.inputs.columns(0, inputs).into_owned();
+    taken
+}
+
+/// A segment with the references as what drives it, and outputs and inputs as what comes of that.
+fn driven(segment: &Segment, reference: DMatrix<f64>) -> Segment {
+    let both: Vec<_> = segment.outputs.column_iter().chain(segment.inputs.column_iter()).collect();
+    Segment { inputs: reference, outputs: DMatrix::from_columns(&both), ..segment.clone() }
+}
+
+/// Which lines of the segments are used.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LineRange {
+    /// \[rad/s\].
+    pub(super) lowest: f64,
+    /// \[rad/s\].
+    pub(super) highest: f64,
+}
+
+impl LineRange {
+    /// The lines of the segments that have any here, from the second of each on.
+    pub(super) fn of(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
+        let used = |lines: Spectrum| lines.between(self.lowest.max(FIRST_LINE * TAU / lines.duration_s), self.highest);
+        let lines = spectra(segments, self.highest, executor).into_iter().map(used);
+        lines.filter(|lines| !lines.omega.is_empty()).collect()
+    }
+}
+
 fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let sample_time_s = segments.iter().map(|segment| segment.sample_time_s).fold(0.0, f64::max);
     let seen = std::f64::consts::PI / sample_time_s;
@@ -128,31 +214,67 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     Err(IdentificationError::SampledTooSlowly { highest: options.band[1], sample_time_s, limit: 0.75 * seen })
 }
 
-/// That there is no measured response; where that is because the records are too short, with the lower end of the band that would do:
-/// the lowest of `omegas` from which on there are lines enough, of those that belong to it.
-fn unmeasured(why: LocalPolynomialError, spectra: &[Spectrum], omegas: &[f64]) -> IdentificationError {
-    let is_enough = |from: usize| {
-        let lines: Vec<Spectrum> =
-            spectra.iter().map(|lines| lines.between(omegas[from] / BEYOND, f64::INFINITY)).collect();
-        omegas[from..].iter().all(|omega| is_measurable(&lines, *omega))
-    };
-    // SpectralLines are used from half the lower end of the band on; the windows of another band lie a little differently.
-    const MARGIN: f64 = 1.05;
-    let lowest = |from: usize| 2.0 * MARGIN * omegas[from];
-    let widest = omegas.last().map_or(0.0, |highest| 0.5 * highest);
-    match why {
-        LocalPolynomialError::TooFewLines { .. } => (0..omegas.len())
-            .find(|from| is_enough(*from))
-            .map(lowest)
-            .filter(|lowest| *lowest < widest)
-            .map_or(IdentificationError::Measurement(why), |lowest| IdentificationError::TooShort { why, lowest }),
-        _ => IdentificationError::Measurement(why),
+/// Periods of the lower end of the band that the longest record lasts at least, and that it should last (M14.12).
+const PERIODS: (f64, f64) = (1.5, 5.0);
+/// The same for each of several inputs that are moved in one record.
+const PERIODS_AN_INPUT: f64 = 3.0;
+/// Real figures that there are at least for each unknown of a model (M14.13).
+pub(super) const FIGURES_AN_UNKNOWN: usize = 5;
+
+/// How long the records are for the lower end of the band (M14.12).
+struct RecordLength {
+    /// Lower end of the band \[rad/s\].
+    lowest: f64,
+    longest_s: f64,
+    better_s: f64,
+    segments: usize,
+}
+
+impl RecordLength {
+    fn of(segments: &[Segment], options: &Options) -> Self {
+        let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
+        let period_s = TAU / options.band[0];
+        let inputs = options.inputs();
+        let of_inputs = if inputs > 1 && segments.len() == 1 { inputs as f64 * PERIODS_AN_INPUT } else { 0.0 };
+        Self {
+            lowest: options.band[0],
+            longest_s: segments.iter().map(length_s).fold(0.0, f64::max),
+            better_s: PERIODS.1.max(of_inputs) * period_s,
+            segments: segments.len(),
+        }
+    }
+
+    /// Refuses records that show nothing of the lower end of the band, or too little for a model of the first order.
+    fn check(&self, lines: &[Spectrum]) -> Result<(), IdentificationError> {
+        let Self { lowest, longest_s, better_s, segments } = *self;
+        let needed_s = PERIODS.0 * TAU / lowest;
+        if longest_s < needed_s {
+            let enough = PERIODS.0 * TAU / longest_s;
+            return Err(IdentificationError::TooShort { longest_s, lowest, needed_s, better_s, enough });
+        }
+        let (inputs, outputs) = lines.first().map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
+        let count: usize = lines.iter().map(|of| of.omega.len()).sum();
+        let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments);
+        let unknowns = parameters_of_order(1, inputs, outputs);
+        if figures < FIGURES_AN_UNKNOWN * unknowns {
+            let needed = FIGURES_AN_UNKNOWN * unknowns;
+            return Err(IdentificationError::TooFewFigures { figures, needed, unknowns });
+        }
+        Ok(())
+    }
+
+    /// That they are shorter than they should be.
+    fn caution(&self) -> Option<IdentificationCaution> {
+        let Self { lowest, longest_s, better_s, .. } = *self;
+        let periods = longest_s * lowest / TAU;
+        // To whole periods.
+        (periods < PERIODS.1 - 0.5).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s })
     }
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
 fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
-    let inputs = options.preparation.inputs.len();
+    let inputs = options.inputs();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
     for segment in segments {
         let centred = centred(segment.inputs.clone());

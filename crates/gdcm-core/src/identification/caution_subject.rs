@@ -1,0 +1,93 @@
+//! What a caution is about, for files and for marks: its code, record, channel, pair and band.
+
+use super::*;
+
+/// A caution as it stands in files.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CautionNote {
+    /// What kind it is, in one word for programs.
+    pub code: &'static str,
+    /// The record's name, where it is about one.
+    pub record: Option<String>,
+    /// The channel's name, where it is about one.
+    pub channel: Option<String>,
+    /// Output and input, where it is about a response.
+    pub pair: Option<[String; 2]>,
+    /// Where in frequency it holds \[rad/s\].
+    pub band_rad_s: Option<[f64; 2]>,
+    /// In words.
+    pub text: String,
+}
+
+impl IdentificationCaution {
+    /// The caution with what it is about.
+    #[must_use]
+    pub fn note(&self) -> CautionNote {
+        let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
+        let record = |code, name: &str| CautionNote { record: Some(name.to_owned()), ..of(code) };
+        let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
+        match self {
+            Self::Records(caution) => CautionNote { text: self.to_string(), ..caution.note() },
+            Self::Short { lowest, periods, .. } => {
+                CautionNote { band_rad_s: Some([*lowest, lowest * (5.0 / periods).max(1.0)]), ..of("short") }
+            }
+            Self::NotSwept { signal, .. } => channel("not-swept", signal),
+            Self::MovedTogether { .. } => of("collinear-inputs"),
+            Self::BandNotShown { shown, .. } => CautionNote { band_rad_s: Some(*shown), ..of("band-narrowed") },
+            Self::Vibration { signal, .. } => channel("vibration", signal),
+            Self::Inadequate { record: name, signal, .. } => {
+                CautionNote { record: Some(name.clone()), ..channel("inadequate", signal) }
+            }
+            Self::UnlikeRecord { name, .. } => record("record", name),
+            Self::Contradiction { records, fault, .. } => {
+                let late = fault.as_ref().is_some_and(|fault| fault.delay_s().is_some());
+                let of_channel = fault.as_ref().and_then(RecordFault::signal).map(|signal| signal.name.clone());
+                let name = records.last().map(|(_, name)| name.clone());
+                CautionNote { record: name, channel: of_channel, ..of(if late { "time-skew" } else { "record" }) }
+            }
+            Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
+            Self::Feedback { .. } => of("feedback-some"),
+            Self::LeavesPoints { output, input, band, .. } => CautionNote {
+                pair: Some([output.name.clone(), input.name.clone()]),
+                band_rad_s: Some(*band),
+                ..of("points")
+            },
+            Self::OrderLimit { narrower, .. } => CautionNote { band_rad_s: Some(*narrower), ..of("order-limit") },
+            Self::HeldOut { .. } => of("held-out"),
+            Self::Reweighed { .. } => of("reweighed"),
+            Self::NotValidated { .. } => of("not-validated"),
+            Self::Unstable { .. } => of("unstable"),
+            Self::PairsNotIdentified { pairs } => {
+                let pair = pairs.first().filter(|_| pairs.len() == 1);
+                CautionNote {
+                    pair: pair.map(|[output, input]| [output.name.clone(), input.name.clone()]),
+                    ..of("not-identified")
+                }
+            }
+        }
+    }
+}
+
+impl RecordCaution {
+    /// The caution with what it is about.
+    fn note(&self) -> CautionNote {
+        let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
+        let record = |code, name: &str| CautionNote { record: Some(name.to_owned()), ..of(code) };
+        let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
+        match self {
+            Self::Resampled { record: name, .. } => record("resampled", name),
+            Self::SegmentDropped { record: name, .. } | Self::RecordUnused { record: name } => record("gap", name),
+            Self::SampleHold { signal, .. } => channel("held", signal),
+            Self::UnlikelyUnit { signal, .. } => channel("unit", signal),
+            Self::MovedTogether { signals, .. } => channel("collinear-inputs", &signals[1]),
+            Self::Copy { copy, .. } => channel("copy", copy),
+            Self::AtLimit { record: name, signal, .. } => {
+                CautionNote { record: Some(name.clone()), ..channel("clipped", signal) }
+            }
+            Self::Stuck { record: name, signals, .. } => {
+                CautionNote { channel: signals.first().map(|signal| signal.name.clone()), ..record("stuck", name) }
+            }
+            Self::Coarse { signal, .. } => channel("coarse", signal),
+        }
+    }
+}

@@ -71,7 +71,7 @@ fn listed<T: Display>(list: &[T]) -> String {
 }
 
 /// Numbers between blanks.
-fn numbers(text: &str) -> Result<Vec<f64>, String> {
+pub(super) fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split_whitespace().filter_map(|part| typed_number(part.trim_end_matches([',', ';'])).transpose()).collect()
 }
 

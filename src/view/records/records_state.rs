@@ -93,6 +93,12 @@ pub enum RecordsCommand {
     SetSearch(SearchSpace),
     /// Draw the response of a model to the same inputs, or not.
     ShowTimeModel(TimeModel, bool),
+    /// Make the part of a record between two times \[s\] a record of its own, in place of the whole.
+    AddPart(usize, [f64; 2]),
+    /// Forget a part of a record.
+    RemovePart(usize),
+    /// Whether dragging in the charts over time chooses parts.
+    ChooseParts(bool),
     /// Show the spectrogram of an input beside the records over time, or none.
     ShowSpectrogram(Option<usize>),
     /// Show a page.
@@ -228,6 +234,8 @@ pub struct RecordsState {
     pub page: RecordsPage,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
+    /// Whether dragging in the charts over time chooses parts.
+    pub chooses_parts: bool,
     /// The input whose spectrogram is drawn.
     pub spectrogram: Option<usize>,
     /// Path of files, as typed.

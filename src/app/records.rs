@@ -8,7 +8,9 @@ use crate::view::View;
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
 use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies};
+use gdcm_core::records::{
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
+};
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
 
@@ -36,6 +38,7 @@ impl GdcmApp {
             RecordsCommand::Add(paths) => self.add_records(paths),
             RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
             RecordsCommand::Show(page) => self.state.records.page = page,
+            RecordsCommand::ChooseParts(chooses) => self.state.records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => self.state.records.spectrogram = input,
             RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
             RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
@@ -215,10 +218,42 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::SetHold(signal, hold) => {
             records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
         }
-        RecordsCommand::SetBand(band) => records.band = band,
+        RecordsCommand::SetBand(band) => {
+            records.band = band;
+            // Topics are brought to a clock that the band takes.
+            let mut channels = channels.clone();
+            channels.resampling.band_end = band.map(|[_, end]| end).or(channels.resampling.band_end);
+            for row in &mut records.rows {
+                if row.layout.is_resampled(&row.table, &channels) {
+                    let (table, layout) = (Arc::clone(&row.table), row.layout.clone());
+                    *row = LaidOutRecord {
+                        used: row.used,
+                        ..LaidOutRecord::new(table, layout, row.guess.clone(), &channels)
+                    };
+                }
+            }
+        }
+        RecordsCommand::SetSearch(search) => records.search = search,
+        RecordsCommand::AddPart(index, part_s) => add_part(records, index, part_s, channels),
+        RecordsCommand::RemovePart(index) => {
+            if records.rows.get(index).is_some_and(|row| row.table.part_s.is_some()) {
+                records.rows.remove(index);
+                records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
+            }
+        }
         _ => return,
     }
     records.changed = true;
+}
+
+/// A part of a record as a record of its own behind it; the whole is no longer used, for evidence counts once.
+fn add_part(records: &mut ConditionRecords, index: usize, part_s: [f64; 2], channels: &RecordChannels) {
+    let Some(whole) = records.rows.get_mut(index) else { return };
+    let table = Arc::new(whole.table.part_of_time(part_s.map(|time_s| (100.0 * time_s).round() / 100.0)));
+    let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
+    whole.used &= whole.table.part_s.is_some();
+    let parts = records.rows[index + 1..].iter().take_while(|row| row.table.part_s.is_some()).count();
+    records.rows.insert(index + 1 + parts, part);
 }
 
 /// The columns of one record, and of all others that have columns of these names.
@@ -232,7 +267,11 @@ fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayou
 }
 
 fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
-    LaidOutRecord::proposed(table, channels, &TimeWish::default()).0
+    let (mut row, notes) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+    if row.layout.is_resampled(&row.table, channels) {
+        Arc::make_mut(&mut row.table).notes.extend(notes);
+    }
+    row
 }
 
 /// The records of a condition of the example that are inside the program.
@@ -256,7 +295,8 @@ fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], f
         for (entry, table) in of_file.into_iter().zip(tables.into_iter().flatten()) {
             match table {
                 Ok(table) => {
-                    let mut row = row_of(RecordTable { name: entry.name.clone(), ..table }, &channels);
+                    let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
+                    let mut row = row_of(table, &channels);
                     (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
                     found.rows.entry(id).or_default().push(row);
                 }
@@ -273,7 +313,7 @@ fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<
     let read = read_records(paths, &Untold)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
-    for table in read.tables {
+    for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
         let row = row_of(table, &channels);
         let id = row.guess.condition_of(dataset).unwrap_or(shown);
         found.rows.entry(id).or_default().push(row);

@@ -4,20 +4,20 @@ use std::path::{Path, PathBuf};
 
 use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, BundleKind, ChannelSide, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
-    held_s,
+    is_held,
 };
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{LaidOutRecord, RecordChannels};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, ResamplingWish, median_step};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::{
-    ChannelConversion, ChannelDelay, ChannelList, Destination, Failure, Group, IdentifyArguments, TerminalProgress,
-    by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table, relative_entry,
-    said_conditions, say,
+    ChannelConversion, ChannelDelay, ChannelList, ChannelTopic, Destination, Failure, Group, IdentifyArguments,
+    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table,
+    relative_entry, said_conditions, say,
 };
 
 /// The file of what was found.
@@ -28,8 +28,9 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let inputs = arguments.records.iter().chain(&arguments.into).cloned().collect();
     let mut outputs = OutputSet::new(existing(arguments.force), inputs);
     let mut destination = Destination::asked(arguments)?;
-    let mut channels = channels(arguments, destination.as_ref())?;
-    let (tasks, unread) = tasks(arguments, destination.as_ref(), &mut channels)?;
+    let band = band(arguments, destination.as_ref())?;
+    let mut channels = channels(arguments, destination.as_ref(), band)?;
+    let (tasks, unread) = tasks(arguments, destination.as_ref(), &mut channels, band)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
@@ -115,7 +116,8 @@ impl IdentificationTask {
         let request = IdentificationRequest::of(records.iter(), preparation.clone(), [band.min(), band.max()]);
         let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
         let mut request = request.map_err(refused)?;
-        arguments.search(&mut request.options);
+        arguments.search().set(&mut request.options);
+        request.options.references = arguments.references().len();
         Ok(Self { request, condition, records })
     }
 
@@ -161,11 +163,12 @@ fn tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
     channels: &mut RecordChannels,
+    band: Band,
 ) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>), Failure> {
-    let band = band(arguments, destination)?;
     let (mut records, unread) = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
-    let preparation = preparation(channels, arguments, &records)?;
+    let mut preparation = preparation(channels, &arguments.delay)?;
+    hold(&mut preparation, &records, channels);
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
         None => {
@@ -200,7 +203,11 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
 }
 
 /// The channels asked for, with what is said of their samples.
-fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
+fn channels(
+    arguments: &IdentifyArguments,
+    destination: Option<&Destination>,
+    band: Band,
+) -> Result<RecordChannels, Failure> {
     let mut channels = named_channels(arguments, destination)?;
     for (name, column) in arguments.references() {
         if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *name) {
@@ -210,6 +217,20 @@ fn channels(arguments: &IdentifyArguments, destination: Option<&Destination>) ->
         // Read as an input, after those of the model.
         channels.inputs.push(with_column(ChannelRule::named(name.clone()), column.as_ref()));
     }
+    let unknown =
+        |option, channel: &String| Failure::Option { option, reason: format!("{channel} is none of the channels") };
+    for ChannelTopic { channel, column } in &arguments.topic {
+        let rule = channels.inputs.iter_mut().chain(&mut channels.outputs).find(|rule| rule.name == *channel);
+        rule.ok_or_else(|| unknown("--topic", channel))?.aliases = vec![column.clone()];
+    }
+    if let Some(held) = arguments.held.iter().find(|held| channels.inputs.iter().all(|rule| rule.name != **held)) {
+        return Err(Failure::Option { option: "--held", reason: format!("{held} is none of the inputs") });
+    }
+    channels.resampling = ResamplingWish {
+        band_end: Some(band.max()),
+        rate_hz: arguments.resample,
+        held: arguments.held.iter().cloned().collect(),
+    };
     let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
     for (option, ChannelConversion { channel, said }) in
         units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
@@ -270,13 +291,25 @@ fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Res
     }
 }
 
+/// What the inputs that are held are prepared as, in records that were not brought to another clock: those moved their stamps.
+fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
+    let as_logged = |record: &&LaidOutRecord| !record.layout.is_resampled(&record.table, channels);
+    let Some(flight) = records.iter().find(as_logged).and_then(|record| record.flight.as_ref()) else { return };
+    for (index, input) in preparation.inputs.iter_mut().enumerate() {
+        if !channels.resampling.held.contains(&input.name) {
+            continue;
+        }
+        // A stair that is seen acts as it is; a command logged once a hold acts half a hold later (M14.1).
+        let values: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
+        input.hold = match median_step(&flight.time_s) {
+            Some(hold_s) if !is_held(&values) => Hold::Command { hold_s },
+            _ => Hold::Acts,
+        };
+    }
+}
+
 /// How the channels are prepared: their known delays are taken out.
-fn preparation(
-    channels: &RecordChannels,
-    arguments: &IdentifyArguments,
-    records: &[LaidOutRecord],
-) -> Result<Preparation, Failure> {
-    let delays = &arguments.delay;
+fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
     let is_known =
         |delay: &ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
     if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
@@ -295,20 +328,9 @@ fn preparation(
             ..ChannelPreparation::named(rule.name.clone())
         }
     };
-    let mut preparation = Preparation {
+    Ok(Preparation {
         inputs: channels.inputs.iter().map(prepared).collect(),
         outputs: channels.outputs.iter().map(prepared).collect(),
-        resample: arguments.resample.map(|rate| 1.0 / rate),
         ..Preparation::of(&[], &[])
-    };
-    for held in &arguments.held {
-        let refused = |reason| Failure::Option { option: "--held", reason };
-        let signal = preparation.signal(held).ok_or_else(|| refused(format!("{held} is none of the channels")))?;
-        let flights = records.iter().filter_map(|record| record.flight.as_deref());
-        let hold_s =
-            held_s(flights, &signal).ok_or_else(|| refused(format!("{held} changes with nearly every sample")))?;
-        let hold = if signal.role == ChannelSide::Input { Hold::Command { hold_s } } else { Hold::FreshSamples };
-        preparation.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
-    }
-    Ok(preparation)
+    })
 }

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_core::identification::Options;
+use gdcm_core::identification::SearchSpace;
 use gdcm_core::records::SaidConversion;
 use gdcm_core::study::OfferedModels;
 
@@ -14,7 +14,7 @@ use super::{real_number, whole_number};
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
 pub struct IdentifyArguments {
-    /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip).
+    /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
     /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
@@ -36,6 +36,18 @@ pub struct IdentifyArguments {
     /// Column of the time; without it, the one that looks like it.
     #[arg(long, value_name = "NAME")]
     pub time: Option<String>,
+    /// Where a channel is found: its topic and the field of it (TOPIC.FIELD), or its column; may be repeated.
+    #[arg(long, value_name = "CHANNEL=TOPIC.FIELD")]
+    pub topic: Vec<ChannelTopic>,
+    /// Samples in a second that the records are brought to, every channel through the same low-pass; without it, topics with clocks of their own are brought to a rate that the band takes, and nothing else is resampled.
+    #[arg(long, value_name = "HZ", value_parser = positive_rate, allow_negative_numbers = true)]
+    pub resample: Option<f64>,
+    /// An input that acts as it was logged until its next sample (sample and hold); may be repeated.
+    #[arg(long, value_name = "CHANNEL")]
+    pub held: Vec<String>,
+    /// A part of the records, from A to B seconds on their own clock, is a record of its own; of one record alone with its name before (RECORD:A:B); may be repeated, and --hold-out A:B holds one out.
+    #[arg(long, value_name = "A:B", allow_hyphen_values = true)]
+    pub part: Vec<RecordPart>,
     /// Samples in a second, in place of a column of the time.
     #[arg(long, value_name = "HZ", value_parser = real_number, conflicts_with = "time", allow_negative_numbers = true)]
     pub sample_rate: Option<f64>,
@@ -48,12 +60,6 @@ pub struct IdentifyArguments {
     /// Recorded references that drove the loop from outside (a chirp, a position reference), in the same way as inputs: gusts fed back into the inputs no longer bias the response.
     #[arg(long, value_name = "NAMES")]
     pub reference: Option<ChannelList>,
-    /// A channel that is logged more often than it changes: an input is a command held and logged when it begins, an output a slow sensor; may be repeated.
-    #[arg(long, value_name = "CHANNEL")]
-    pub held: Vec<String>,
-    /// Records with uneven sample times are interpolated to so many samples in a second.
-    #[arg(long, value_name = "HZ", value_parser = real_number)]
-    pub resample: Option<f64>,
     /// Order of the model, in place of those that the records can carry; may be repeated.
     #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
     pub order: Vec<usize>,
@@ -98,18 +104,9 @@ impl IdentifyArguments {
         self.reference.as_ref().map_or(&[], |list| &list.channels)
     }
 
-    /// Sets what is searched to what is asked for.
-    pub fn search(&self, options: &mut Options) {
-        options.references = self.references().len();
-        if !self.order.is_empty() {
-            options.orders = Some(self.order.clone());
-        }
-        if !self.past.is_empty() {
-            options.pasts = Some(self.past.clone());
-        }
-        if !self.pole.is_empty() {
-            options.poles = self.pole.iter().map(|pole| pole / options.band[1]).collect();
-        }
+    /// What is tried in place of the defaults.
+    pub fn search(&self) -> SearchSpace {
+        SearchSpace { orders: self.order.clone(), pasts: self.past.clone(), poles: self.pole.clone() }
     }
 }
 
@@ -205,6 +202,62 @@ fn said_factor(text: &str) -> Result<ChannelConversion, String> {
     }
 }
 
+/// Where a channel is found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelTopic {
+    /// The channel.
+    pub channel: String,
+    /// The topic and its field, or a column.
+    pub column: String,
+}
+
+impl FromStr for ChannelTopic {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let said = text.split_once('=').map(|(channel, column)| (channel.trim(), column.trim().trim_matches('"')));
+        match said.filter(|(channel, column)| !channel.is_empty() && !column.is_empty()) {
+            Some((channel, column)) => Ok(Self { channel: channel.to_owned(), column: column.to_owned() }),
+            None => {
+                Err(format!("expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""))
+            }
+        }
+    }
+}
+
+fn positive_rate(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
+        _ => Err(format!("expected a positive number of samples in a second, found \"{text}\"")),
+    }
+}
+
+/// A part of a record, by its own clock.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordPart {
+    /// The record; none for all that hold some of that time.
+    pub record: Option<String>,
+    /// First and last time \[s\].
+    pub part_s: [f64; 2],
+}
+
+impl FromStr for RecordPart {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected A:B, as 29:58, or RECORD:A:B, with A less than B, found \"{text}\"");
+        let (rest, to) = text.rsplit_once(':').ok_or_else(expected)?;
+        let (record, from) = rest.rsplit_once(':').map_or((None, rest), |(record, from)| (Some(record), from));
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        match number(from).zip(number(to)) {
+            Some((from, to)) if from < to && record.is_none_or(|record| !record.trim().is_empty()) => {
+                Ok(Self { record: record.map(|record| record.trim().to_owned()), part_s: [from, to] })
+            }
+            _ => Err(expected()),
+        }
+    }
+}
+
 /// A known delay of a channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelDelay {
@@ -251,6 +304,18 @@ mod tests {
         assert_eq!(said_factor("NZ=-1").unwrap().said, SaidConversion::Factor(-1.0));
         assert!(["P", "P=", "=1"].iter().all(|wrong| said_unit(wrong).is_err()));
         assert!(["P", "P=x", "P=0", "P=NaN", "=1"].iter().all(|wrong| said_factor(wrong).is_err()));
+    }
+
+    #[test]
+    fn a_part_is_of_all_records_or_of_one() {
+        assert_eq!("29:58".parse(), Ok(RecordPart { record: None, part_s: [29.0, 58.0] }));
+        assert_eq!("log:1:-1:5".parse(), Ok(RecordPart { record: Some("log:1".into()), part_s: [-1.0, 5.0] }));
+        assert!(
+            ["29", "58:29", "5:5", ":1:2", "a:b", "0:inf"].iter().all(|wrong| wrong.parse::<RecordPart>().is_err())
+        );
+        assert!(positive_rate("50") == Ok(50.0) && ["0", "-1", "x"].iter().all(|wrong| positive_rate(wrong).is_err()));
+        let topic: ChannelTopic = "P = a.b[0]".parse().unwrap();
+        assert_eq!((topic.channel.as_str(), topic.column.as_str()), ("P", "a.b[0]"));
     }
 
     #[test]

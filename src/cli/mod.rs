@@ -46,7 +46,9 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
-pub use identify_arguments::{ChannelConversion, ChannelDelay, ChannelList, IdentifyArguments, OfferedChoice};
+pub use identify_arguments::{
+    ChannelConversion, ChannelDelay, ChannelList, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart,
+};
 
 /// What the command line asks for.
 #[derive(Debug)]

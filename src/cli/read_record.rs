@@ -4,12 +4,14 @@ use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::dataset::ConditionRecord;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies};
+use gdcm_core::records::{
+    LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step, with_topics_joined,
+};
 use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records, relative_folder};
 
-use super::{Failure, IdentifyArguments, ReadingProgress, caution, error, indented, note};
+use super::{Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, error, indented, note};
 
 /// Every record with its columns, and the files named of which none came; what was chosen, and what is wrong, is told on standard error.
 pub(super) fn laid_out(
@@ -18,8 +20,14 @@ pub(super) fn laid_out(
 ) -> Result<(Vec<LaidOutRecord>, Vec<PathBuf>), Failure> {
     let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
-    for table in tables(arguments)? {
+    let tables = with_topics_joined(tables(arguments)?, channels, &wish);
+    for table in parts(tables, &arguments.part)? {
         let (record, notes) = LaidOutRecord::proposed(table, channels, &wish);
+        // A part is of those records that have samples then.
+        if record.table.part_s.is_some() && record.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
+            note(&format!("{}: no samples then", record.table.name));
+            continue;
+        }
         let name = &record.table.name;
         // Records of one flight are alike: what is chosen is said once.
         if notes != told {
@@ -30,6 +38,12 @@ pub(super) fn laid_out(
         record.problems.iter().for_each(|words| error(&format!("{name}: {words}")));
         channels.take_units(&record.layout, &record.table);
         records.push(record);
+    }
+    let has = |part_s| records.iter().any(|record| record.table.part_s == Some(part_s));
+    if let Some(part) = arguments.part.iter().find(|part| !has(part.part_s)) {
+        let [from, to] = part.part_s;
+        let reason = format!("no record has samples from {from} to {to} s on its own clock");
+        return Err(Failure::Option { option: "--part", reason });
     }
     // By the units that the channels have by now.
     for record in records.iter_mut().filter(|record| record.problems.is_empty()) {
@@ -55,6 +69,28 @@ fn unread(named: &[PathBuf], records: &[LaidOutRecord]) -> Vec<PathBuf> {
     named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
 }
 
+/// The parts asked for, in place of the records that they are of.
+fn parts(tables: Vec<RecordTable>, asked: &[RecordPart]) -> Result<Vec<RecordTable>, Failure> {
+    let mut found = Vec::new();
+    for RecordPart { record, part_s } in asked {
+        let before = found.len();
+        let is_it = |table: &&RecordTable| record.as_ref().is_none_or(|wanted| is_called(table, wanted));
+        found.extend(tables.iter().filter(is_it).map(|table| table.part_of_time(*part_s)));
+        if found.len() == before {
+            let reason = format!("\"{}\" is none of the records", record.as_deref().unwrap_or_default());
+            return Err(Failure::Option { option: "--part", reason });
+        }
+    }
+    Ok(if asked.is_empty() { tables } else { found })
+}
+
+/// Whether a record is called so: by its file, its name, or its name in its file.
+fn is_called(table: &RecordTable, wanted: &str) -> bool {
+    let source = &table.source;
+    let file = Path::new(wanted).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    source.file.rsplit('/').next() == Some(&file) || table.name == *wanted || source.variable.as_deref() == Some(wanted)
+}
+
 fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
     let FoundRecords { tables, faults, ignored, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
     faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
@@ -68,12 +104,13 @@ pub(super) fn hold_out(wanted: &[String], records: &mut [LaidOutRecord]) -> Resu
         records.iter_mut().for_each(|record| record.guess.held_out = false);
     }
     for wanted in wanted {
-        let file = Path::new(wanted).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let is_it = |record: &&mut LaidOutRecord| {
-            let source = &record.table.source;
-            let own = source.file.rsplit('/').next() == Some(&file);
-            own || record.table.name == *wanted || source.variable.as_deref() == Some(wanted)
+        let part = wanted.parse::<RecordPart>().ok();
+        let is_part = |table: &RecordTable| {
+            part.as_ref().is_some_and(|RecordPart { record, part_s }| {
+                table.part_s == Some(*part_s) && record.as_ref().is_none_or(|record| is_called(table, record))
+            })
         };
+        let is_it = |record: &&mut LaidOutRecord| is_called(&record.table, wanted) || is_part(&record.table);
         let found: Vec<&mut LaidOutRecord> = records.iter_mut().filter(is_it).collect();
         if found.is_empty() {
             let reason = format!("\"{wanted}\" is none of the records; give its file among them too");
@@ -92,7 +129,9 @@ pub(super) fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], data
         let below = path.join(&entry.file);
         if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
     });
-    if let Some(place) = place {
+    // Topics of a folder whose files were given one by one.
+    let together = || asked.first().and_then(|path| path.parent()).filter(|_| entry.file.is_empty());
+    if let Some(place) = place.or_else(|| together().map(Path::to_owned)) {
         let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
         let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
@@ -103,14 +142,17 @@ pub(super) fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], data
 /// A line a record, each behind `indent` spaces.
 pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
-    for LaidOutRecord { table: record, layout, guess, .. } in records {
-        let step_s = layout.time.and_then(|time| time.step_s(record)).unwrap_or(f64::NAN);
+    for LaidOutRecord { table: record, layout, guess, flight, .. } in records {
+        // As it is used: topics are brought to one clock, parts are cut.
+        let clock = flight.as_ref().map(|flight| (flight.time_s.len(), median_step(&flight.time_s)));
+        let (samples, step_s) = clock.unwrap_or((record.rows(), layout.time.and_then(|time| time.step_s(record))));
+        let step_s = step_s.unwrap_or(f64::NAN);
         table.row([
             sanitized(&record.name),
             guess.kind.word().to_owned(),
-            record.rows().to_string(),
+            samples.to_string(),
             format!("{} s", telling(step_s, 3)),
-            format!("{:.1} s", step_s * record.rows() as f64),
+            format!("{:.1} s", step_s * samples as f64),
             if guess.held_out { "held out".to_owned() } else { String::new() },
         ]);
     }

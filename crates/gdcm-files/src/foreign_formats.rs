@@ -12,7 +12,7 @@ struct Foreign(&'static [u8], &'static str, &'static str);
 const AS_TABLE: &str = "save it as text in columns (CSV)";
 const UNPACK: &str = "unpack it, or pack it as .zip or .gz";
 
-const FOREIGN: [Foreign; 20] = [
+const FOREIGN: [Foreign; 17] = [
     Foreign(b"PAR1", "a Parquet file", "save it as CSV: pandas.read_parquet(\"x.parquet\").to_csv(\"x.csv\")"),
     Foreign(
         b"ARROW1",
@@ -24,13 +24,6 @@ const FOREIGN: [Foreign; 20] = [
     Foreign(b"\x80\x03", "a pickle of Python", "save its arrays: numpy.savez(\"x.npz\", A=A, B=B, C=C, D=D)"),
     Foreign(b"\x80\x04", "a pickle of Python", "save its arrays: numpy.savez(\"x.npz\", A=A, B=B, C=C, D=D)"),
     Foreign(b"\x80\x05", "a pickle of Python", "save its arrays: numpy.savez(\"x.npz\", A=A, B=B, C=C, D=D)"),
-    Foreign(b"ULog\x01\x12\x35", "a ULog of PX4", "save its topics as CSV: ulog2csv x.ulg"),
-    Foreign(
-        b"\xa3\x95\x80",
-        "a DataFlash log of ArduPilot",
-        "save its messages as CSV: mavlogdump.py --format csv --types ATT x.bin",
-    ),
-    Foreign(b"H Product:Blackbox", "a blackbox log", "save it as CSV: blackbox_decode x.bbl"),
     Foreign(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an Excel workbook or another document of Microsoft Office", AS_TABLE),
     Foreign(b"SQLite format 3", "a database of SQLite", AS_TABLE),
     Foreign(b"CDF\x01", "a netCDF file", "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 x.nc y.h5"),
@@ -52,7 +45,7 @@ impl Importer for ForeignFormat {
     }
 
     fn endings(&self) -> &'static [&'static str] {
-        &["parquet", "feather", "pkl", "ulg", "bbl"]
+        &["parquet", "feather", "pkl"]
     }
 
     fn recognises(&self, bytes: &[u8], _: &str) -> bool {

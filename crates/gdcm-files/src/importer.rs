@@ -9,6 +9,7 @@
 //! A new format is a type with [`Importer`] in a file of its own, and an entry in [`FORMATS`].
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -20,10 +21,12 @@ use gdcm_core::message_text::sanitized;
 use crate::file_error::FileError;
 use crate::foreign_formats::ForeignFormat;
 use crate::json_values::Json;
+use crate::logs::{Blackbox, DataFlash, DataFlashText, ULog};
 use crate::mat::Mat;
 use crate::mat73::Hdf5;
 use crate::npy::Npy;
 use crate::octave::{OctaveBinary, OctaveText};
+use crate::record_files::Columns;
 use crate::source::{kind_of, read_bytes, sha256};
 use crate::text::{Literals, Text};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
@@ -53,8 +56,22 @@ pub(crate) trait Importer: Sync {
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
-const FORMATS: [&dyn Importer; 10] =
-    [&Npy, &Zip, &Hdf5, &OctaveBinary, &ForeignFormat, &Mat, &OctaveText, &Json, &Literals, &Text];
+const FORMATS: [&dyn Importer; 14] = [
+    &Npy,
+    &Zip,
+    &Hdf5,
+    &OctaveBinary,
+    &ULog,
+    &DataFlash,
+    &Blackbox,
+    &ForeignFormat,
+    &Mat,
+    &OctaveText,
+    &DataFlashText,
+    &Json,
+    &Literals,
+    &Text,
+];
 
 /// What a file holds.
 pub(crate) enum Contents {
@@ -73,6 +90,8 @@ pub(crate) enum Contents {
     Dataset(Box<Dataset>),
     /// Models of this program.
     Models(Vec<FoundModel>),
+    /// Logs of an aircraft: records, of whatever clocks.
+    Logs(Vec<Columns>),
     /// The files of an archive.
     Archive {
         /// Its arrays, which belong together.
@@ -226,7 +245,7 @@ fn list(
                 return Err(FileError::FolderTooDeep { path });
             }
             list(&path, root, deeper - 1, files, skipped)?;
-        } else if is_known(&path) {
+        } else if is_known(&path) && !is_other_log(&path) {
             let meant = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
             let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             match kind_of(meant) {
@@ -239,6 +258,18 @@ fn list(
         }
     }
     Ok(())
+}
+
+/// Whether a file whose ending many programs use (`.log`, `.bin`) is of none of the formats that are read.
+fn is_other_log(path: &Path) -> bool {
+    /// Every format of these endings is known by its first bytes.
+    const FIRST: usize = 64;
+    if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
+        return false;
+    }
+    let mut first = Vec::with_capacity(FIRST);
+    let read = fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
+    read.is_ok() && importer_of(&first, path).name() == Text.name()
 }
 
 /// Whether the name of a file ends as those of some format do; studies are no sources of models or records.

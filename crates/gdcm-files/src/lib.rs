@@ -14,6 +14,7 @@ mod importer;
 mod json_text;
 mod json_values;
 mod location;
+mod logs;
 mod mat;
 mod mat73;
 mod model_files;

@@ -89,6 +89,10 @@ impl ModelReading<'_> {
                 }
             },
             Contents::Dataset(dataset) => Found { items: models_of_dataset(&dataset, name), ..Found::default() },
+            Contents::Logs(_) => Found {
+                ignored: vec![format!("{name}: a log of an aircraft: records, not a model")],
+                ..Found::default()
+            },
             Contents::Models(models) => Found { items: models, ..Found::default() },
             Contents::Archive { variables, files, ignored } => {
                 for (inner, contents) in files {

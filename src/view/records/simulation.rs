@@ -143,17 +143,15 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
 
 /// Which models are drawn beside the record.
 pub(super) fn time_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label(palette.small("response to the same inputs, and fit, of:"));
-        for model in TimeModel::ALL {
-            let mut shown = state.records.time_models.contains(&model);
-            let text = RichText::new(format!("{} model", model.name())).size(SMALL_SIZE).color(model.color(palette));
-            let hint = "In windows of 10 s, or shorter where the model is unstable, each from an initial state and offsets of its own";
-            if ui.checkbox(&mut shown, text).on_hover_text(hint).changed() {
-                commands.push(RecordsCommand::ShowTimeModel(model, shown).into());
-            }
+    ui.label(palette.small("response to the same inputs, and fit, of:"));
+    for model in TimeModel::ALL {
+        let mut shown = state.records.time_models.contains(&model);
+        let text = RichText::new(format!("{} model", model.name())).size(SMALL_SIZE).color(model.color(palette));
+        let hint = "In windows of 10 s, or shorter where the model is unstable, each from an initial state and offsets of its own";
+        if ui.checkbox(&mut shown, text).on_hover_text(hint).changed() {
+            commands.push(RecordsCommand::ShowTimeModel(model, shown).into());
         }
-    });
+    }
 }
 
 /// Theil's coefficient below which a model is a good one (M14, section 6).

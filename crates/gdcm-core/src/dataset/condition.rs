@@ -241,12 +241,13 @@ fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
         if let Some(value) = record.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
             return wrong("sample_time_s", "a positive number of seconds", value);
         }
-        for &[first, last] in &record.used_s {
+        let parts = record.part_s.iter().map(|part| ("part_s", part));
+        for (field, &[first, last]) in record.used_s.iter().map(|piece| ("used_s", piece)).chain(parts) {
             if !first.is_finite() {
-                return wrong("used_s", "finite times", first);
+                return wrong(field, "finite times", first);
             }
             if !last.is_finite() || last < first {
-                return wrong("used_s", "a finite last time, not before the first", last);
+                return wrong(field, "a finite last time, not before the first", last);
             }
         }
     }
@@ -320,6 +321,8 @@ pub struct ConditionRecord {
     pub sample_time_s: Option<f64>,
     /// First and last time \[s\] of each piece that is used, on the record's clock; none for all of it.
     pub used_s: Vec<[f64; 2]>,
+    /// First and last time \[s\] of the part of what the file holds that is this record, on its clock; none for all of it.
+    pub part_s: Option<[f64; 2]>,
 }
 
 impl ConditionRecord {
@@ -335,6 +338,7 @@ impl ConditionRecord {
             used: true,
             sample_time_s: None,
             used_s: Vec::new(),
+            part_s: None,
         }
     }
 }

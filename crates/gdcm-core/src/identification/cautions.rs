@@ -414,11 +414,6 @@ fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
     stamped.filter(|(time, value)| time.is_finite() && value.is_finite()).collect()
 }
 
-/// For how long a channel holds its value \[s\], where most consecutive samples of it are equal while it moves.
-pub fn held_s<'r>(records: impl Iterator<Item = &'r FlightRecord>, signal: &Signal) -> Option<f64> {
-    sample_hold(records.map(|record| samples(record, signal))).map(|(_, held_s)| held_s)
-}
-
 /// Share of equal consecutive samples in a channel while it moves, and the median time between changes \[s\]; none where
 /// the share is a half or less.
 fn sample_hold(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> {

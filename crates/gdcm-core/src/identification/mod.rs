@@ -30,6 +30,7 @@ mod response_estimate;
 mod sampling;
 mod spectrum;
 mod subspace;
+mod topics;
 mod triangular_factor;
 mod uncertainty;
 mod validation;
@@ -50,5 +51,5 @@ use self::{
 pub use self::{
     candidate::*, caution_subject::*, cautions::*, diagnostics::*, feedback::*, flight_record::*, identify::*,
     local_polynomial::*, options::*, point_check::*, preparation::*, prepared_data::*, record_contrast::*,
-    response_estimate::*, spectrum::*, uncertainty::*, validation::*,
+    response_estimate::*, spectrum::*, topics::*, uncertainty::*, validation::*,
 };

@@ -6,8 +6,6 @@ use nalgebra::DMatrix;
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
-/// Sample times over that of a record to which it may be interpolated.
-const RESAMPLED: (f64, f64) = (0.25, 1.5);
 /// The longest gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
@@ -70,8 +68,8 @@ pub struct Preparation {
     pub inputs: Vec<ChannelPreparation>,
     /// The outputs, in the order of the columns.
     pub outputs: Vec<ChannelPreparation>,
-    /// The sample time \[s\] to which a record with uneven sample times is interpolated; none: it is refused.
-    pub resample: Option<f64>,
+    /// Whether a record with uneven sample times may be interpolated.
+    pub resample: bool,
     /// Whether an output that stands still while others move is right, and no gap.
     pub keep_frozen: bool,
     /// The longest gap, in samples, that is bridged by a straight line; a longer one splits the record.
@@ -88,7 +86,7 @@ impl Preparation {
         Self {
             inputs: channels(inputs),
             outputs: channels(outputs),
-            resample: None,
+            resample: false,
             keep_frozen: false,
             longest_bridge: 3,
             least_segment_s: 10.0,
@@ -117,20 +115,11 @@ impl Preparation {
         channels.get_mut(signal.index)
     }
 
-    /// The channel of a name.
-    #[must_use]
-    pub fn signal(&self, name: &str) -> Option<Signal> {
-        self.channels().map(|(signal, _)| signal).find(|signal| signal.name == name)
-    }
-
     fn checked(&self) -> Result<(), PreparationError> {
         for (role, channels) in [(ChannelSide::Input, &self.inputs), (ChannelSide::Output, &self.outputs)] {
             if channels.is_empty() {
                 return Err(PreparationError::NoChannels { role });
             }
-        }
-        if let Some(seconds) = self.resample.filter(|seconds| !(seconds.is_finite() && *seconds > 0.0)) {
-            return Err(PreparationError::Resampling { seconds });
         }
         for (signal, channel) in self.channels() {
             let hold_s = match channel.hold {
@@ -233,14 +222,6 @@ pub enum PreparationError {
         /// The channel.
         signal: Signal,
         /// The delay or hold \[s\].
-        seconds: f64,
-    },
-    /// The sample time to interpolate to is none.
-    #[error(
-        "a sample time of {seconds:.4} s to interpolate to: it must be from a quarter to one and a half times that of the record"
-    )]
-    Resampling {
-        /// As asked for \[s\].
         seconds: f64,
     },
     /// The least length of a segment is no length.
@@ -369,18 +350,13 @@ fn prepare_record(
     preparation: &Preparation,
 ) -> Result<PreparedRecord, PreparationError> {
     check_shape(record, preparation)?;
-    let mut clock = Clock::of(record, preparation.longest_bridge)?;
+    let clock = Clock::of(record, preparation.longest_bridge)?;
     let mut cautions = Vec::new();
     if clock.is_uneven() {
         let (name, percent) = (record.name.clone(), clock.jitter_percent);
-        let Some(sample_time_s) = preparation.resample else {
+        if !preparation.resample {
             return Err(PreparationError::UnevenSampling { record: name, percent });
-        };
-        // Shorter ones show nothing more, longer ones would fold what is above them into the band.
-        if !(RESAMPLED.0 * clock.sample_time_s..=RESAMPLED.1 * clock.sample_time_s).contains(&sample_time_s) {
-            return Err(PreparationError::Resampling { seconds: sample_time_s });
         }
-        clock.sample_time_s = sample_time_s;
         cautions.push(RecordCaution::Resampled { record: name, percent });
     }
     let (tracks, mut gaps) = Track::all(record, &clock, preparation);

@@ -1,5 +1,6 @@
 //! What is wrong, or odd, in the columns chosen from a record.
 
+use crate::identification::TopicError;
 use crate::units::{number, telling};
 
 /// Why the columns chosen from a record cannot be used as they are.
@@ -159,6 +160,9 @@ pub enum LayoutProblem {
         /// What it may be, in words; empty where nothing is known.
         hint: String,
     },
+    /// Topics with clocks of their own do not make a record.
+    #[error("{0}")]
+    Topics(TopicError),
 }
 
 /// What is odd in the columns chosen from a record, and can be right.

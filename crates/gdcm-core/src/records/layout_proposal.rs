@@ -66,12 +66,19 @@ impl RecordLayout {
         });
         proposal.problems = told.iter().cloned().chain(rest).collect();
         proposal.cautions = proposal.layout.cautions(table, channels);
+        if let Some(Ok(resampling)) = Resampling::of(&proposal.layout, table, channels) {
+            proposal.notes.extend(resampling.words());
+        }
         proposal
     }
 }
 
 impl LayoutProposal {
     fn time(&mut self, table: &RecordTable, wish: &TimeWish) -> Option<TimeBase> {
+        if table.columns.iter().any(|column| column.topic.is_some()) {
+            self.notes.push("time from the stamps of each topic".to_owned());
+            return Some(TimeBase::Topics);
+        }
         if let Some(step_s) = wish.sample_time_s {
             self.notes.push(format!("one sample each {} s, as asked", number(step_s)));
             return Some(TimeBase::SampleTime(step_s));
@@ -241,6 +248,20 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
         if found.is_empty() && !is_number {
             found = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
         }
+    }
+    let names = if aliases.is_empty() { vec![rule.name.clone()] } else { aliases };
+    let of_columns = |is_it: &dyn Fn(&RecordColumn) -> bool| -> Vec<usize> {
+        (0..table.columns.len()).filter(|&column| is_it(&table.columns[column])).collect()
+    };
+    if found.is_empty() {
+        found = of_columns(&|column| {
+            column.meaning.is_some_and(|meaning| names.iter().any(|wanted| same_channel(meaning, wanted)))
+        });
+    }
+    // In logs whose columns are known, a field of the same letter is another thing: "PIDR.P" is no roll rate.
+    let is_known = || table.columns.iter().any(|column| column.meaning.is_some());
+    if found.is_empty() && (!rule.aliases.is_empty() || !is_known()) {
+        found = of_columns(&|column| names.iter().any(|wanted| column.field() == *wanted));
     }
     if rule.aliases.is_empty() {
         found.retain(|&column| !is_position(table, column, rule));

@@ -23,12 +23,8 @@ fn column(name: &str, unit: &str, values: impl Fn(f64) -> f64) -> RecordColumn {
 
 fn table(columns: Vec<RecordColumn>) -> RecordTable {
     RecordTable {
-        name: "LON 1".into(),
-        columns,
-        named: true,
-        sample_time_s: None,
         source: RecordSource { file: "lon_1.csv".into(), sha256: "ab".into(), variable: None },
-        notes: Vec::new(),
+        ..RecordTable::new("LON 1", columns)
     }
 }
 

@@ -6,7 +6,8 @@
 //!                                   -> problems and cautions of what is chosen, or the flight record
 //! ```
 //!
-//! Nothing is resampled, filtered or taken off here: samples are the file's, times a factor.
+//! Samples are the file's, times a factor; nothing is filtered or taken off. Where the channels have clocks of their own, they are
+//! brought to one (M14.11), and that is said.
 
 mod laid_out_record;
 mod layout_problem;
@@ -15,12 +16,14 @@ mod layout_proposal;
 mod layout_tests;
 mod record_layout;
 mod record_table;
+mod resampling;
 mod spectrogram;
 mod time_base;
+mod topic_tables;
 
 use crate::dataset::ChannelSide;
 
 pub use self::{
-    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, spectrogram::*,
-    time_base::*,
+    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, resampling::*,
+    spectrogram::*, time_base::*, topic_tables::*,
 };

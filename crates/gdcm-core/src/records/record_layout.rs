@@ -52,14 +52,19 @@ impl RecordLayout {
             }
         }
         problems.extend(self.shared_columns(table, channels));
+        if problems.is_empty() {
+            let refused = Resampling::of(self, table, channels).and_then(Result::err);
+            problems.extend(refused.map(LayoutProblem::Topics));
+        }
         problems
     }
 
     /// What is odd in the chosen columns, and can be right.
     pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
         let mut cautions = Vec::new();
-        let samples = table.rows();
+        let is_resampled = Resampling::of(self, table, channels).is_some();
         if let Some(time) = self.time {
+            let samples = table.rows();
             let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
@@ -69,8 +74,8 @@ impl RecordLayout {
         for (index, (rule, used)) in all.iter().enumerate() {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
             let (channel, column) = (rule.name.clone(), table.quoted(used.column));
-            let count = values.iter().filter(|value| !value.is_finite()).count();
-            if count > 0 && count < samples {
+            let (samples, count) = (values.len(), values.iter().filter(|value| !value.is_finite()).count());
+            if count > 0 && count < samples && !(is_resampled && has_holes(values)) {
                 let (channel, column) = (channel.clone(), column.clone());
                 cautions.push(LayoutCaution::Missing { channel, column, count, samples });
             }
@@ -102,13 +107,28 @@ impl RecordLayout {
     ) -> Result<FlightRecord, Vec<LayoutProblem>> {
         let problems = self.problems(table, channels);
         match self.time {
-            Some(time) if problems.is_empty() => Ok(FlightRecord {
-                name: table.name.clone(),
-                time_s: time.times_s(table),
-                inputs: samples_of(table, &self.inputs),
-                outputs: samples_of(table, &self.outputs),
+            Some(time) if problems.is_empty() => Ok(match Resampling::of(self, table, channels) {
+                Some(Ok(resampling)) => resampling.flight_record(table.name.clone()),
+                _ => self.as_logged(table, time),
             }),
             _ => Err(problems),
+        }
+    }
+
+    /// The samples on the one clock that they have, those of its part alone.
+    fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
+        let of_topic = || {
+            let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
+            Some(table.columns.get(used.column)?.topic.as_ref()?.time_s.clone())
+        };
+        let time_s = if time == TimeBase::Topics { of_topic().unwrap_or_default() } else { time.times_s(table) };
+        let is_of_part = |time: &f64| table.part_s.is_none_or(|[from, to]| (from..=to).contains(time));
+        let rows: Vec<usize> = (0..time_s.len()).filter(|row| is_of_part(&time_s[*row])).collect();
+        FlightRecord {
+            name: table.name.clone(),
+            inputs: samples_of(table, &self.inputs, &rows),
+            outputs: samples_of(table, &self.outputs, &rows),
+            time_s: rows.into_iter().map(|row| time_s[row]).collect(),
         }
     }
 
@@ -143,6 +163,7 @@ impl RecordLayout {
             sha256: Some(table.source.sha256.clone()).filter(|hash| !hash.is_empty()),
             kind: guess.kind,
             held_out: guess.held_out,
+            part_s: table.part_s,
             sample_time_s: self.time.and_then(|time| time.step_s(table)).filter(|step_s| *step_s > 0.0),
             ..ConditionRecord::new(table.name.clone(), table.source.file.clone())
         }
@@ -151,6 +172,7 @@ impl RecordLayout {
     fn time_problems(&self, table: &RecordTable) -> Vec<LayoutProblem> {
         match self.time {
             None => vec![LayoutProblem::NoTime { found: table.column_names() }],
+            Some(TimeBase::Topics) => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) if step_s.is_finite() && step_s > 0.0 => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime { step_s }],
             Some(TimeBase::Column { column, .. }) if column >= table.columns.len() => {
@@ -214,18 +236,19 @@ fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
 }
 
 fn same_samples(first: &[f64], second: &[f64]) -> bool {
-    first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+    first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
 }
 
-/// One row a sample, one column a channel; not a number where a sample is missing.
-fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>]) -> DMatrix<f64> {
-    let mut samples = DMatrix::from_element(table.rows(), uses.len(), f64::NAN);
+/// The samples of these rows, one column a channel; not a number where a sample is missing.
+fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>], rows: &[usize]) -> DMatrix<f64> {
+    let mut samples = DMatrix::from_element(rows.len(), uses.len(), f64::NAN);
     for (mut into, used) in samples.column_iter_mut().zip(uses) {
         let Some((column, used)) = used.and_then(|used| Some((table.columns.get(used.column)?, used))) else {
             continue;
         };
-        for (sample, value) in into.iter_mut().zip(&column.values).filter(|(_, value)| value.is_finite()) {
-            *sample = if used.factor == 1.0 { *value } else { value * used.factor };
+        let values = rows.iter().map(|row| column.values.get(*row).copied().unwrap_or(f64::NAN));
+        for (sample, value) in into.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
+            *sample = if used.factor == 1.0 { value } else { value * used.factor };
         }
     }
     samples
@@ -319,6 +342,8 @@ pub struct RecordChannels {
     pub outputs: Vec<ChannelRule>,
     /// What is said of samples, by channel.
     pub said: BTreeMap<String, SaidConversion>,
+    /// How topics with clocks of their own become one record.
+    pub resampling: ResamplingWish,
 }
 
 impl RecordChannels {
@@ -333,6 +358,7 @@ impl RecordChannels {
             inputs: dataset.inputs().iter().map(rule).collect(),
             outputs: dataset.outputs().iter().map(rule).collect(),
             said: BTreeMap::new(),
+            resampling: ResamplingWish { band_end: Some(dataset.band().max()), ..ResamplingWish::default() },
         }
     }
 

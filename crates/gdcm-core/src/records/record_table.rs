@@ -3,6 +3,7 @@
 use super::*;
 use crate::units::number;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A column of samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,12 +16,31 @@ pub struct RecordColumn {
     pub side: Option<ChannelSide>,
     /// Samples, in the file's unit; not a number where one is missing.
     pub values: Vec<f64>,
+    /// The topic that it is of, where that has a clock of its own.
+    pub topic: Option<Arc<TopicClock>>,
+    /// The channel that it is by the documentation of the system that logged it: "P", "LON".
+    pub meaning: Option<&'static str>,
+}
+
+/// When the samples of a topic were taken: some columns of a table, with stamps of their own.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TopicClock {
+    /// Name of the topic.
+    pub name: String,
+    /// A stamp \[s\] for each sample of its columns.
+    pub time_s: Vec<f64>,
 }
 
 impl RecordColumn {
     /// A column of which nothing but its name is known.
     pub fn new(name: impl Into<String>, values: Vec<f64>) -> Self {
-        Self { name: name.into(), unit: None, side: None, values }
+        Self { name: name.into(), unit: None, side: None, values, topic: None, meaning: None }
+    }
+
+    /// Its name within its topic: "xyz[0]" of "vehicle_angular_velocity.xyz[0]".
+    pub fn field(&self) -> &str {
+        let topic = self.topic.as_ref().map_or("", |topic| topic.name.as_str());
+        self.name.strip_prefix(topic).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&self.name)
     }
 
     /// Least and greatest of the samples that are numbers; none where there are none.
@@ -48,7 +68,7 @@ pub struct RecordSource {
 pub struct RecordTable {
     /// Its name, for people.
     pub name: String,
-    /// Its columns, all of one length.
+    /// Its columns, all of one length but for those of topics with clocks of their own.
     pub columns: Vec<RecordColumn>,
     /// Whether the file names the columns.
     pub named: bool,
@@ -58,12 +78,39 @@ pub struct RecordTable {
     pub source: RecordSource,
     /// How it was read, in words.
     pub notes: Vec<String>,
+    /// What the system that logged it was at, when.
+    pub modes: Vec<ModeSpan>,
+    /// First and last time \[s\] of the part of it that is the record; none is all of it.
+    pub part_s: Option<[f64; 2]>,
+}
+
+/// From when to when the system that logged a record was armed, or in a flight mode.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModeSpan {
+    /// "armed", or the name of the mode.
+    pub name: String,
+    /// First and last time \[s\], on the clock of the record.
+    pub ends_s: [f64; 2],
 }
 
 impl RecordTable {
-    /// Number of samples.
+    /// A table of columns, of which nothing else is known.
+    pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
+        Self {
+            name: name.into(),
+            columns,
+            named: true,
+            sample_time_s: None,
+            source: RecordSource::default(),
+            notes: Vec::new(),
+            modes: Vec::new(),
+            part_s: None,
+        }
+    }
+
+    /// Number of samples; of topics with clocks of their own, of the one that has most.
     pub fn rows(&self) -> usize {
-        self.columns.first().map_or(0, |column| column.values.len())
+        self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
     }
 
     /// The column of this name, as it is written, else without case; `#30` is the thirtieth.
@@ -145,6 +192,9 @@ impl Separation {
 
     /// What tells the records of a table apart, as far as names of columns and stamps say.
     pub fn proposed(table: &RecordTable) -> Self {
+        if table.columns.iter().any(|column| column.topic.is_some()) {
+            return Self::None;
+        }
         let numbers = |index: &usize| {
             let column = &table.columns[*index];
             let name: String =
@@ -206,19 +256,19 @@ impl RecordTable {
 
     fn part(&self, rows: Range<usize>, name: &str, why: &str) -> RecordTable {
         let variable = self.source.variable.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(", ");
-        let columns = self.columns.iter().map(|RecordColumn { name, unit, side, values }| RecordColumn {
-            name: name.clone(),
-            unit: unit.clone(),
-            side: *side,
-            values: values[rows.clone()].to_vec(),
+        let columns = self.columns.iter().map(|column| RecordColumn {
+            unit: column.unit.clone(),
+            side: column.side,
+            meaning: column.meaning,
+            ..RecordColumn::new(column.name.clone(), column.values[rows.clone()].to_vec())
         });
         RecordTable {
-            name: format!("{}, {name}", self.name),
-            columns: columns.collect(),
             named: self.named,
             sample_time_s: self.sample_time_s,
             source: RecordSource { variable: Some(variable), ..self.source.clone() },
             notes: self.notes.iter().cloned().chain([why.to_owned()]).collect(),
+            modes: self.modes.clone(),
+            ..RecordTable::new(format!("{}, {name}", self.name), columns.collect())
         }
     }
 }
@@ -257,14 +307,7 @@ mod tests {
 
     fn table(columns: Vec<(&str, Vec<f64>)>) -> RecordTable {
         let columns = columns.into_iter().map(|(name, values)| RecordColumn::new(name, values)).collect();
-        RecordTable {
-            name: "log".into(),
-            columns,
-            named: true,
-            sample_time_s: None,
-            source: RecordSource::default(),
-            notes: Vec::new(),
-        }
+        RecordTable::new("log", columns)
     }
 
     fn counted(from: usize, to: usize) -> Vec<f64> {

@@ -15,6 +15,8 @@ pub enum TimeBase {
     },
     /// One sample each so many seconds.
     SampleTime(f64),
+    /// The stamps that each topic has of its own.
+    Topics,
 }
 
 /// Steps longer than this \[s\] are no samples of a manoeuvre.
@@ -28,6 +30,7 @@ impl TimeBase {
     pub fn times_s(self, table: &RecordTable) -> Vec<f64> {
         match self {
             TimeBase::SampleTime(step_s) => (0..table.rows()).map(|sample| sample as f64 * step_s).collect(),
+            TimeBase::Topics => Vec::new(),
             TimeBase::Column { column, seconds } => {
                 let stamps = table.columns.get(column).map_or(&[][..], |column| &column.values);
                 stamps.iter().map(|stamp| if stamp.is_finite() { stamp * seconds } else { f64::NAN }).collect()
@@ -39,6 +42,7 @@ impl TimeBase {
     pub fn step_s(self, table: &RecordTable) -> Option<f64> {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
+            TimeBase::Topics => None,
             TimeBase::Column { column, seconds } => Some(median_step(&table.columns.get(column)?.values)? * seconds),
         }
     }
@@ -105,7 +109,7 @@ fn told_step(step: f64) -> String {
 }
 
 /// Median of the steps between stamps that follow one another.
-pub(super) fn median_step(stamps: &[f64]) -> Option<f64> {
+pub fn median_step(stamps: &[f64]) -> Option<f64> {
     let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
     let mut steps: Vec<f64> = steps.filter(|step| step.is_finite()).collect();
     let middle = steps.len() / 2;
@@ -129,8 +133,7 @@ mod tests {
             columns: vec![RecordColumn::new("time constant", vec![1.0; column.values.len()]), column],
             named: true,
             sample_time_s: None,
-            source: RecordSource::default(),
-            notes: Vec::new(),
+            ..RecordTable::new("r", Vec::new())
         }
     }
 

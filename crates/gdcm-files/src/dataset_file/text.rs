@@ -112,6 +112,8 @@ pub(crate) struct RecordText {
     pub(super) sample_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) used_s: Option<Limited<[f64; 2], MOST_PIECES>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) part_s: Option<[f64; 2]>,
 }
 
 /// A model: of a dataset, of the models of any file (`gdcm-models`) or of identified ones (`gdcm-identified`).
@@ -347,15 +349,16 @@ impl RecordText {
             used: self.used.unwrap_or(true),
             sample_time_s: self.sample_time_s,
             used_s: Limited::entries(self.used_s),
+            part_s: self.part_s,
         })
     }
 
     /// A record, as files say it.
     pub(crate) fn of(record: &ConditionRecord) -> Self {
-        let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s } =
+        let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s } =
             record.clone();
         let (kind, used, used_s) = (Some(kind.word().to_owned()), Some(used), Limited::some(used_s));
-        Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s }
+        Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s }
     }
 }
 

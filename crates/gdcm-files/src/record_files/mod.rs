@@ -12,7 +12,7 @@ mod record_columns;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::assembly::standard_patterns;
-use gdcm_core::records::{RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
+use gdcm_core::records::{ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
 
 use crate::file_error::FileError;
 use crate::importer::{
@@ -62,13 +62,26 @@ pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Resul
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let budget = ReadingBudget::new(MOST_MEMORY);
     let mut found = FoundRecords::default();
-    found.take(import_file(path, &name, &budget)?, &budget)?;
+    if path.is_dir() {
+        import(&[path.to_owned()], &Unheard, |file, budget| found.take(file, budget))?;
+    } else {
+        found.take(import_file(path, &name, &budget)?, &budget)?;
+    }
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
         let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
+        let together = || RecordTable::of_topics(&found.tables);
+        let record = record.or_else(|| (*variable == Some(RecordTable::TOPICS)).then(together));
         record.ok_or_else(|| FileError::NoRecord { path: path.to_owned(), record: variable.map(str::to_owned), held })
     };
     Ok(variables.iter().map(record).collect())
+}
+
+/// Reads without telling how far it is.
+struct Unheard;
+
+impl FolderProgress for Unheard {
+    fn reading(&self, _: usize, _: usize, _: &str) {}
 }
 
 impl FoundRecords {
@@ -84,6 +97,7 @@ impl FoundRecords {
                     self.add(columns.of_file(name, &sha256));
                 }
             }
+            Contents::Logs(logs) => logs.into_iter().for_each(|log| self.add(log.of_file(name, &sha256))),
             Contents::Dataset(_) | Contents::Models(_) => {
                 self.ignored.push(format!("{name}: a dataset or models, not a record"));
             }
@@ -128,40 +142,50 @@ impl FoundRecords {
 
     /// Adds a table, its records apart.
     fn add(&mut self, table: RecordTable) {
+        let table = table.side_by_side();
         let separation = Separation::proposed(&table);
         self.tables.extend(table.separated(separation));
     }
 }
 
 /// Columns that belong together, before it is known of which file they are.
-pub(super) struct Columns {
+pub(crate) struct Columns {
     /// Where they lie in the file ("rec(2)"); empty where they are all of it.
-    pub(super) variable: String,
+    pub(crate) variable: String,
     /// They.
-    pub(super) columns: Vec<RecordColumn>,
+    pub(crate) columns: Vec<RecordColumn>,
     /// Whether the file names them.
-    pub(super) named: bool,
+    pub(crate) named: bool,
     /// Sample time \[s\], where the file says it.
-    pub(super) sample_time_s: Option<f64>,
+    pub(crate) sample_time_s: Option<f64>,
     /// How they were read.
-    pub(super) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
+    /// What the system that logged them was at, when.
+    pub(crate) modes: Vec<ModeSpan>,
 }
 
 impl Columns {
+    /// Columns with names, of which nothing else is known.
+    pub(crate) fn new(variable: String, columns: Vec<RecordColumn>) -> Self {
+        Self { variable, columns, named: true, sample_time_s: None, notes: Vec::new(), modes: Vec::new() }
+    }
+
     /// The record of these columns in a file.
     fn of_file(self, name: &str, sha256: &str) -> RecordTable {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
         let stem = stem.strip_suffix(".csv").unwrap_or(stem);
-        let Self { variable, columns, named, sample_time_s, notes } = self;
+        let Self { variable, columns, named, sample_time_s, notes, modes } = self;
         let variable = Some(variable).filter(|variable| !variable.is_empty());
+        let name_of_record =
+            variable.as_ref().map_or_else(|| stem.to_owned(), |variable| format!("{stem}, {variable}"));
         RecordTable {
-            name: variable.as_ref().map_or_else(|| stem.to_owned(), |variable| format!("{stem}, {variable}")),
-            columns,
             named,
             sample_time_s,
             source: RecordSource { file: name.to_owned(), sha256: sha256.to_owned(), variable },
             notes,
+            modes,
+            ..RecordTable::new(name_of_record, columns)
         }
     }
 }
@@ -207,12 +231,25 @@ fn of_table(table: TextTable) -> Columns {
     let TextTable { names, units, columns, notes, .. } = table;
     let named = names.is_some();
     let names = names.unwrap_or_default();
+    let (columns, mut notes) = (columns, notes);
+    let columns = if named { columns } else { without_numbers(columns, &mut notes) };
     let columns = columns.into_iter().enumerate().map(|(index, values)| {
         let name = names.get(index).filter(|name| !name.is_empty()).cloned();
         let name = name.unwrap_or_else(|| format!("column {}", index + 1));
         RecordColumn { unit: units.get(index).cloned().flatten(), ..RecordColumn::new(name, values) }
     });
-    Columns { variable: String::new(), columns: columns.collect(), named, sample_time_s: None, notes }
+    Columns { named, notes, ..Columns::new(String::new(), columns.collect()) }
+}
+
+/// Columns without a first line that counts them: 1, 2, 3, …
+fn without_numbers(mut columns: Vec<Vec<f64>>, notes: &mut Vec<String>) -> Vec<Vec<f64>> {
+    let counts = columns.iter().enumerate().all(|(index, values)| values.first() == Some(&(index as f64 + 1.0)));
+    if counts && columns.len() > 2 {
+        columns.iter_mut().for_each(|values| values.rotate_left(1));
+        columns.iter_mut().for_each(|values| values.truncate(values.len() - 1));
+        notes.push("the first line numbers the columns: it is no sample".to_owned());
+    }
+    columns
 }
 
 // The records of the embedded example.

@@ -21,8 +21,18 @@ const OUTPUT_NAMES: [&str; 6] = ["outputname", "outputnames", "outname", "ynames
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
 /// Names of what names, and gives the units of, the columns of a matrix that stands alone.
-const NAMES: [&str; 9] =
-    ["names", "channels", "columns", "labels", "variables", "header", "columnnames", "channelnames", "colheaders"];
+const NAMES: [&str; 10] = [
+    "names",
+    "channels",
+    "columns",
+    "labels",
+    "variables",
+    "header",
+    "columnnames",
+    "channelnames",
+    "colheaders",
+    "varlab",
+];
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
 /// Samples under one name: how many, and in how many columns, the samples of a column behind one another.
@@ -111,7 +121,7 @@ pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns>
     if !named {
         columns.iter_mut().enumerate().for_each(|(index, column)| column.name = format!("column {}", index + 1));
     }
-    Some(Columns { variable: variable.to_owned(), columns, named, sample_time_s, notes })
+    Some(Columns { named, sample_time_s, notes, ..Columns::new(variable.to_owned(), columns) })
 }
 
 /// The number of samples, and whether it is that of a time.
@@ -214,13 +224,7 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
         }));
     }
     let found = columns.len() > 1 && time.rows >= FEWEST_TIMED;
-    found.then(|| Columns {
-        variable: variable.to_owned(),
-        columns,
-        named: true,
-        sample_time_s: None,
-        notes: Vec::new(),
-    })
+    found.then(|| Columns::new(variable.to_owned(), columns))
 }
 
 // Data of MATLAB's and Octave's identification tools.
@@ -299,7 +303,7 @@ fn experiment(record: &Record<'_>, output: &Value, index: usize, variable: Strin
     }
     let step = part_of(record, &["Ts", "tsam"], index).and_then(|value| samples_of(value, None));
     let sample_time_s = step.and_then(|samples| samples.values.first()?.first().copied()).filter(|step| *step > 0.0);
-    Ok(Columns { variable, columns, named: true, sample_time_s, notes: Vec::new() })
+    Ok(Columns { sample_time_s, ..Columns::new(variable, columns) })
 }
 
 fn side_columns(record: &Record<'_>, side: &Side, index: usize, rows: Option<usize>) -> Vec<RecordColumn> {
@@ -362,7 +366,7 @@ pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<C
                     }
                 }
             }
-            Some(Columns { variable: variable.to_owned(), columns, named: true, sample_time_s, notes })
+            Some(Columns { sample_time_s, notes, ..Columns::new(variable.to_owned(), columns) })
         }
         "table" => {
             let names = texts_of(record.get(&["varnames"])?)?;
@@ -372,7 +376,7 @@ pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<C
             let columns = columns(&data.values, &names, units.as_deref());
             let found = !columns.is_empty();
             let variable = variable.to_owned();
-            found.then_some(Columns { variable, columns, named: true, sample_time_s: None, notes: Vec::new() })
+            found.then(|| Columns::new(variable, columns))
         }
         _ => None,
     }

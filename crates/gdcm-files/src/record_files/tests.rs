@@ -4,7 +4,7 @@ use super::*;
 use crate::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::ChannelSide;
-use gdcm_core::records::{RecordChannels, RecordLayout, TimeWish};
+use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
@@ -310,4 +310,77 @@ fn damaged_files_are_faults_and_never_a_panic() {
             let _ = records_of_bytes(&whole[..at], name, &ReadingBudget::new(1 << 22));
         }
     }
+}
+
+// Logs of aircraft, and topics in files of their own.
+
+fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
+    let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
+    RecordChannels { inputs: rules(inputs), outputs: rules(outputs), ..RecordChannels::default() }
+}
+
+#[test]
+fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentation() {
+    let bytes = include_bytes!("../../../../tests/data/logs/quadrotor.ulg");
+    let found = records_of_bytes(bytes, "quadrotor.ulg", &ReadingBudget::new(MOST_MEMORY)).unwrap();
+    assert_eq!(found.tables.len(), 1);
+    let channels = sides(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
+    let (record, notes) =
+        LaidOutRecord::proposed(found.tables.into_iter().next().unwrap(), &channels, &TimeWish::default());
+    assert!(record.problems.is_empty(), "{:?}", record.problems);
+    let unit = |used: &Option<ColumnUse>| record.table.columns[used.unwrap().column].unit.clone().unwrap();
+    assert_eq!(record.layout.outputs.iter().map(unit).collect::<Vec<_>>(), ["rad/s", "rad/s", "rad/s", "m/s^2"]);
+    // The acceleration is logged 20 times a second, the rest 50 times.
+    assert!(notes.iter().any(|note| note.contains("LAT 50.0 Hz") && note.contains("NX 20.0 Hz")), "{notes:?}");
+    let flight = record.flight.unwrap();
+    assert!(flight.time_s.len() > 250 && flight.time_s[0] > 120.0, "16 s, two minutes after the start");
+    assert!(record.table.modes.iter().any(|mode| mode.name == "armed"), "{:?}", record.table.modes);
+}
+
+#[test]
+fn a_blackbox_holds_several_flights_each_of_which_is_a_record() {
+    let bytes = include_bytes!("../../../../tests/data/logs/two-flights.bbl");
+    let found = records_of_bytes(bytes, "two-flights.bbl", &ReadingBudget::new(MOST_MEMORY)).unwrap();
+    let names: Vec<&str> = found.tables.iter().map(|table| table.name.as_str()).collect();
+    assert_eq!(names, ["two-flights, flight 2"], "{:?}", found.tables[0].notes);
+    let channels = sides(&["LAT", "LON", "PED", "COL"], &["P", "Q", "R"]);
+    let (record, _) =
+        LaidOutRecord::proposed(found.tables.into_iter().next().unwrap(), &channels, &TimeWish::default());
+    assert!(record.problems.is_empty(), "{:?}", record.problems);
+    let flight = record.flight.unwrap();
+    let steps: Vec<f64> = flight.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // Every sixteenth turn of the controller, which turns once in two samples of 125 µs.
+    assert!(steps.iter().filter(|step| (**step - 0.004).abs() < 1e-5).count() * 10 > 9 * steps.len());
+    let motor = &record.table.columns[record.table.find("motor[0]").unwrap()];
+    let (least, most) = motor.range().unwrap();
+    assert!((158.0..2048.0).contains(&least) && most < 2048.0, "as the heading says: {least} to {most}");
+}
+
+#[test]
+fn a_table_for_each_topic_in_an_archive_is_one_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |rate: u32, name: &str| {
+        let row = |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));
+        format!("time,{name}\n{}", (0..20 * rate).map(row).collect::<String>())
+    };
+    std::fs::write(folder.path().join("notes.log"), "it went well").unwrap();
+    std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
+    std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
+    let found = read_records(&[folder.path().to_owned()], &Unheard).unwrap();
+    let tables = with_topics_joined(found.tables, &sides(&["M"], &["q"]), &TimeWish::default());
+    assert_eq!((tables.len(), found.faults), (1, Vec::new()), "other programs' logs are passed over");
+    let (record, _) = LaidOutRecord::proposed(tables[0].clone(), &sides(&["M"], &["q"]), &TimeWish::default());
+    let first = record.flight.unwrap();
+    assert!(record.problems.is_empty() && first.time_s.len() > 900);
+    // A dataset names the folder and what its tables make together; they are found so again.
+    let again = load_records(folder.path(), &[Some(RecordTable::TOPICS)]).unwrap().remove(0).unwrap();
+    assert_eq!(again.columns, tables[0].columns);
+}
+
+#[test]
+fn a_first_line_that_numbers_the_columns_is_no_sample() {
+    let rows: String = (0..60).map(|k| format!("{},{},{}\n", 0.02 * f64::from(k), k, 2 * k)).collect();
+    let found = records_of_bytes(format!("1,2,3\n{rows}").as_bytes(), "n.csv", &ReadingBudget::new(1 << 20)).unwrap();
+    assert_eq!((found.tables[0].rows(), found.tables[0].columns[2].values[1]), (60, 2.0));
+    assert!(found.tables[0].notes.iter().any(|note| note.contains("numbers the columns")));
 }

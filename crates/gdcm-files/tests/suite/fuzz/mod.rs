@@ -11,6 +11,7 @@
 //! folder of temporary files; `GDCM_FUZZ_FILE=path` tries that one alone.
 
 mod hdf5;
+mod logs;
 mod matlab;
 #[path = "../../../src/mat/sample_tests.rs"]
 #[expect(dead_code, reason = "the readers' own tests use the rest")]
@@ -182,7 +183,7 @@ type NamedBytes = (String, Vec<u8>);
 /// Files of the tests' data in these folders.
 static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
     let root = crate::program_folder().join("tests/data");
-    let folders = ["mat", "mat73", "npy", "records", "edges", "hostile", ""];
+    let folders = ["mat", "mat73", "npy", "records", "logs", "edges", "hostile", ""];
     let mut paths: Vec<PathBuf> = folders
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
@@ -269,10 +270,11 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
 
 /// The file of an execution: one of the corpus, damaged, or one of a grammar, damaged or not.
 fn file_of(dice: &mut Dice) -> NamedBytes {
-    let grammars: [fn(&mut Dice) -> NamedBytes; 8] = [
+    let grammars: [fn(&mut Dice) -> NamedBytes; 9] = [
         matlab::file,
         matlab::file_of_objects,
         hdf5::file,
+        logs::file,
         texts::json,
         texts::program_json,
         texts::table,

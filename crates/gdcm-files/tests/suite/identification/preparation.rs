@@ -236,7 +236,7 @@ fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
     (0..1000).for_each(|n| record.outputs[(n, 0)] = record.time_s[n].sin());
     let refused = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err();
     assert!(matches!(refused, PreparationError::UnevenSampling { percent, .. } if percent > 20.0));
-    let allowed = Preparation { resample: Some(0.02), ..settings() };
+    let allowed = Preparation { resample: true, ..settings() };
     let prepared = prepared(&record, &allowed);
     assert!(words(&prepared.cautions).contains("interpolated to even steps"));
     let segment = &prepared.segments[0];

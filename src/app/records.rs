@@ -38,6 +38,7 @@ impl GdcmApp {
             RecordsCommand::Add(paths) => self.add_records(paths),
             RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
             RecordsCommand::Show(page) => self.state.records.page = page,
+            RecordsCommand::ChooseParts(chooses) => self.state.records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => self.state.records.spectrogram = input,
             RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
             RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
@@ -232,9 +233,27 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
                 }
             }
         }
+        RecordsCommand::SetSearch(search) => records.search = search,
+        RecordsCommand::AddPart(index, part_s) => add_part(records, index, part_s, channels),
+        RecordsCommand::RemovePart(index) => {
+            if records.rows.get(index).is_some_and(|row| row.table.part_s.is_some()) {
+                records.rows.remove(index);
+                records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
+            }
+        }
         _ => return,
     }
     records.changed = true;
+}
+
+/// A part of a record as a record of its own behind it; the whole is no longer used, for evidence counts once.
+fn add_part(records: &mut ConditionRecords, index: usize, part_s: [f64; 2], channels: &RecordChannels) {
+    let Some(whole) = records.rows.get_mut(index) else { return };
+    let table = Arc::new(whole.table.part_of_time(part_s.map(|time_s| (100.0 * time_s).round() / 100.0)));
+    let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
+    whole.used &= whole.table.part_s.is_some();
+    let parts = records.rows[index + 1..].iter().take_while(|row| row.table.part_s.is_some()).count();
+    records.rows.insert(index + 1 + parts, part);
 }
 
 /// The columns of one record, and of all others that have columns of these names.

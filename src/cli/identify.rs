@@ -114,7 +114,7 @@ impl IdentificationTask {
         let request = IdentificationRequest::of(records.iter(), preparation.clone(), [band.min(), band.max()]);
         let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
         let mut request = request.map_err(refused)?;
-        arguments.search(&mut request.options);
+        arguments.search().set(&mut request.options);
         Ok(Self { request, condition, records })
     }
 

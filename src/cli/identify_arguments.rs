@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_core::identification::Options;
+use gdcm_core::identification::SearchSpace;
 use gdcm_core::records::SaidConversion;
 use gdcm_core::study::OfferedModels;
 
@@ -96,17 +96,9 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
-    /// Sets what is searched to what is asked for.
-    pub fn search(&self, options: &mut Options) {
-        if !self.order.is_empty() {
-            options.orders = Some(self.order.clone());
-        }
-        if !self.past.is_empty() {
-            options.pasts = Some(self.past.clone());
-        }
-        if !self.pole.is_empty() {
-            options.poles = self.pole.iter().map(|pole| pole / options.band[1]).collect();
-        }
+    /// What is tried in place of the defaults.
+    pub fn search(&self) -> SearchSpace {
+        SearchSpace { orders: self.order.clone(), pasts: self.past.clone(), poles: self.pole.clone() }
     }
 }
 

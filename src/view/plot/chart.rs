@@ -119,6 +119,8 @@ pub struct Chart<'a> {
     pub verticals: Vec<f64>,
     /// A picture below everything else.
     pub image: Option<ChartImage>,
+    /// Whether dragging chooses a stretch of the horizontal axis, which [`chosen_stretch`] gives for the group, in place of panning.
+    pub chooses: bool,
 }
 
 /// A picture over a stretch of both axes; the vertical one is of frequencies \[rad/s\].
@@ -151,6 +153,7 @@ impl<'a> Chart<'a> {
             marks: Vec::new(),
             verticals: Vec::new(),
             image: None,
+            chooses: false,
         }
     }
 }
@@ -163,6 +166,9 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
         empty_chart(id, plot_rect, chart, palette).show(ui, |plot| {
             draw(plot, chart, palette);
             zoom_by_scrolling(plot, chart.fits_values);
+            if let Some(group) = chart.group.filter(|_| chart.chooses) {
+                choose_by_dragging(plot, group);
+            }
             view_of(plot)
         })
     });
@@ -184,6 +190,32 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     chart.notes.iter().for_each(|(words, _)| description.extend(["; ", words.as_str()]));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     response
+}
+
+/// Where dragging began and where it is, and whether it has ended.
+type Stretch = ([f64; 2], bool);
+
+fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
+    let (response, id) = (plot.response().clone(), group.with("stretch"));
+    let Some(at) = response.interact_pointer_pos().map(|at| plot.plot_from_screen(at).x) else { return };
+    plot.ctx().data_mut(|data| {
+        let stretch: Option<Stretch> = data.get_temp(id);
+        let from = stretch.map(|([from, _], _)| from).filter(|_| !response.drag_started());
+        if response.dragged() || response.drag_stopped() {
+            data.insert_temp::<Stretch>(id, ([from.unwrap_or(at), at], response.drag_stopped()));
+        }
+    });
+}
+
+/// The stretch that is being chosen by dragging in a group of charts, its lower end first, and whether that has ended; it is given
+/// once then.
+pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
+    let id = group.with("stretch");
+    let ([from, to], has_ended) = ui.data(|data| data.get_temp::<Stretch>(id))?;
+    if has_ended {
+        ui.data_mut(|data| data.remove::<Stretch>(id));
+    }
+    Some(([from.min(to), from.max(to)], has_ended))
 }
 
 /// The wheel zooms about the pointer, and so do two fingers.
@@ -215,7 +247,7 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
     let plot = quiet_plot(id, palette)
         .sense(Sense::click_and_drag())
         .auto_bounds(true)
-        .allow_drag(Vec2b::new(true, !chart.fits_values))
+        .allow_drag(if chart.chooses { Vec2b::FALSE } else { Vec2b::new(true, !chart.fits_values) })
         .allow_axis_zoom_drag(true)
         .allow_double_click_reset(true)
         .set_margin_fraction(egui::vec2(0.01, 0.08))

@@ -6,13 +6,14 @@ use std::sync::Arc;
 
 use egui::{ColorImage, Id, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, vec2};
 
-use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui};
-use crate::view::{Command, Palette, choice_ui};
+use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch};
+use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
 use gdcm_core::records::Spectrogram;
 
+use super::advanced::numbers;
 use super::{ConditionRecords, Page, RecordsCommand, simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
@@ -30,11 +31,18 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
     let names =
         dataset.inputs().iter().chain(dataset.outputs()).map(|channel| format!("{} [{}]", channel.name, channel.unit));
     let names: Vec<String> = names.collect();
-    let gaps = spans(records, palette);
+    let mut gaps = spans(records, palette);
     ui.horizontal_wrapped(|ui| {
         time_models_ui(ui, state, palette, commands);
         spectrogram_choice_ui(ui, page, commands);
+        part_ui(ui, page, commands);
     });
+    if let Some((part_s, has_ended)) = chosen_stretch(ui, charts()) {
+        gaps.push(ChartSpan { ends: part_s, color: palette.accent.gamma_multiply(0.35) });
+        if has_ended {
+            commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
+        }
+    }
     let models = simulated(state, palette);
     for model in &models {
         model.absence_ui(ui, state, palette);
@@ -51,8 +59,9 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
             let corner = area.min + vec2(column as f32 * width, line as f32 * height);
             let is_last = line + 1 == rows || place + 1 == names.len();
             let mut chart = Chart::new(name, ChartAxis::Linear, if is_last { "time [s]" } else { "" }, "");
-            chart.group = Some(Id::unique("flight record"));
+            chart.group = Some(charts());
             chart.fits_values = true;
+            chart.chooses = state.records.chooses_parts;
             chart.spans.clone_from(&gaps);
             let color = if place < dataset.inputs().len() { palette.text } else { palette.identified };
             let points =
@@ -71,6 +80,30 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
 
 /// Height of the spectrogram \[pt\].
 const SPECTROGRAM_HEIGHT: f32 = 150.0;
+
+/// What the charts of the record shown have in common: the stretch of time.
+fn charts() -> Id {
+    Id::unique("flight record")
+}
+
+/// Parts of a record, dragged in the charts or typed, become records of their own.
+fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &mut Vec<Command>) {
+    ui.label(palette.small("part [s]"));
+    let text = entry_ui(ui, "Part of the record", "", "from to", 70.0);
+    if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
+        commands.push(match numbers(&text).as_deref() {
+            Ok([from, to]) if from < to => RecordsCommand::AddPart(records.chosen, [*from, *to]).into(),
+            _ => Command::Refuse(format!(
+                "a part: expected two times in s, the earlier first, as in \"12 40\", found \"{text}\""
+            )),
+        });
+    }
+    let hint =
+        "Dragging in a chart makes that stretch a record of its own, to be fitted or held out, in place of the whole";
+    if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
+        commands.push(RecordsCommand::ChooseParts(chooses).into());
+    }
+}
 
 /// Whether a spectrogram is shown, and of which input.
 fn spectrogram_choice_ui(ui: &mut Ui, Page { state, palette, .. }: Page<'_>, commands: &mut Vec<Command>) {
@@ -101,15 +134,16 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         let picture = picture_of(&found, palette);
         Some((ui.ctx().load_texture("spectrogram", picture, TextureOptions::LINEAR), found))
     });
-    let Some((texture, found)): &Option<(TextureHandle, Spectrogram)> = &*found else {
+    let Some((texture, found)): &Option<(TextureHandle, Spectrogram)> = &found else {
         ui.label(palette.small("The record is too short, or sampled too slowly, for a spectrogram"));
         return;
     };
     let (title, unit) = (format!("{}: power over time, dB below the greatest", channel.name), state.display.unit);
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
-    chart.group = Some(Id::unique("flight record"));
+    chart.group = Some(charts());
     chart.fits_values = true;
+    chart.chooses = state.records.chooses_parts;
     let (across, omega) = (found.time_s, found.omega);
     chart.image = Some(ChartImage { texture: texture.id(), across, omega, unit });
     let area = ui.allocate_exact_size(vec2(ui.available_width(), SPECTROGRAM_HEIGHT), Sense::hover()).0;
@@ -137,9 +171,15 @@ fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
     runs.filter(|run| !run.is_empty()).map(Arc::from).collect()
 }
 
-/// What was bridged and what was cut out of the record shown.
+/// The parts of the record shown that are records of their own; what was bridged and what was cut out of it.
 fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
-    let Some(found) = records.identification().filter(|_| !records.changed) else { return Vec::new() };
+    let source = records.rows.get(records.chosen).map(|row| &row.table.source);
+    let of_it =
+        records.rows.iter().enumerate().filter(|(at, row)| *at != records.chosen && Some(&row.table.source) == source);
+    let parts = of_it.filter_map(|(_, row)| row.table.part_s);
+    let parts: Vec<ChartSpan> =
+        parts.map(|ends| ChartSpan { ends, color: palette.identified.gamma_multiply(0.15) }).collect();
+    let Some(found) = records.identification().filter(|_| !records.changed) else { return parts };
     let record = (0..found.record_uses.len()).find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
     let span = |gap: &gdcm_core::identification::Gap| {
@@ -149,7 +189,7 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
         };
         ChartSpan { ends: [gap.start_s, gap.end_s], color }
     };
-    gaps.iter().map(span).collect()
+    parts.into_iter().chain(gaps.iter().map(span)).collect()
 }
 
 /// Least height of a chart of spectra \[pt\].

@@ -1,5 +1,6 @@
 //! Flight records of the condition shown, and the models identified from them.
 
+mod advanced;
 mod histories;
 mod outcome;
 mod record_list;
@@ -12,6 +13,7 @@ pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsRe
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};
 
+use advanced::advanced_ui;
 use histories::{Source, histories_ui, inputs_ui, kept};
 use outcome::{offered_menu_ui, outcome_ui};
 use record_list::{BAD, CHI_SQUARED, columns_ui, cost_text, record_list_ui};

@@ -121,6 +121,9 @@ fn kind_ui(ui: &mut Ui, index: usize, row: &LaidOutRecord, palette: &Palette, co
             }
         });
         named(kinds.response, AccessRole::ComboBox, "Manoeuvre of the record");
+        if row.table.part_s.is_some() && ui.small_button("Remove part").clicked() {
+            commands.push(RecordsCommand::RemovePart(index).into());
+        }
     });
 }
 

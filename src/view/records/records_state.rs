@@ -7,7 +7,9 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_core::dataset::{ChannelSide, ConditionId, Dataset, RecordKind};
-use gdcm_core::identification::{ChannelPreparation, Hold, Identification, IdentificationError, Preparation, Signal};
+use gdcm_core::identification::{
+    ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
+};
 use gdcm_core::records::{LaidOutRecord, RecordLayout};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
 
@@ -87,8 +89,16 @@ pub enum RecordsCommand {
     SetHold(Signal, Hold),
     /// Identify over another band \[rad/s\]; none takes the study's.
     SetBand(Option<[f64; 2]>),
+    /// Try these orders, past windows and poles.
+    SetSearch(SearchSpace),
     /// Draw the response of a model to the same inputs, or not.
     ShowTimeModel(TimeModel, bool),
+    /// Make the part of a record between two times \[s\] a record of its own, in place of the whole.
+    AddPart(usize, [f64; 2]),
+    /// Forget a part of a record.
+    RemovePart(usize),
+    /// Whether dragging in the charts over time chooses parts.
+    ChooseParts(bool),
     /// Show the spectrogram of an input beside the records over time, or none.
     ShowSpectrogram(Option<usize>),
     /// Show a page.
@@ -120,6 +130,8 @@ pub struct ConditionRecords {
     pub outputs: Vec<ChannelPreparation>,
     /// Band \[rad/s\]; none is the study's.
     pub band: Option<[f64; 2]>,
+    /// What is tried in place of the defaults.
+    pub search: SearchSpace,
     /// What was identified last, and from what.
     pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
     /// Whether something else was said since.
@@ -168,7 +180,9 @@ impl ConditionRecords {
     /// # Errors
     /// No record is used, or all are held out.
     pub fn job(&self, condition: ConditionId, band: [f64; 2]) -> Result<IdentifyJob, NothingToIdentify> {
-        let request = IdentificationRequest::of(self.rows.iter(), self.preparation(), self.band.unwrap_or(band))?;
+        let band = self.band.unwrap_or(band);
+        let mut request = IdentificationRequest::of(self.rows.iter(), self.preparation(), band)?;
+        self.search.set(&mut request.options);
         Ok(IdentifyJob::new(condition, request))
     }
 
@@ -220,6 +234,8 @@ pub struct RecordsState {
     pub page: RecordsPage,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
+    /// Whether dragging in the charts over time chooses parts.
+    pub chooses_parts: bool,
     /// The input whose spectrogram is drawn.
     pub spectrogram: Option<usize>,
     /// Path of files, as typed.

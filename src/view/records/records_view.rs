@@ -6,8 +6,8 @@ use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, text_field_ui};
 
 use super::{
-    ConditionRecords, Page, RecordsCommand, RecordsPage, columns_ui, fit_ui, histories_ui, identified_poles_ui,
-    inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui, stabilisation_ui,
+    ConditionRecords, Page, RecordsCommand, RecordsPage, advanced_ui, columns_ui, fit_ui, histories_ui,
+    identified_poles_ui, inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui, stabilisation_ui,
 };
 
 /// Width of the list \[pt\].
@@ -49,6 +49,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
         ScrollArea::vertical().id_salt("records").auto_shrink(false).show(ui, |ui| {
             source_ui(ui, state, &mut path, palette, commands);
             record_list_ui(ui, page, commands);
+            advanced_ui(ui, page, commands);
             outcome_ui(ui, page, commands);
         });
     });

@@ -9,7 +9,7 @@ fn bench(window: &Window) -> &AssemblyState {
     state(window).assembling.as_ref().expect("models are being imported")
 }
 
-fn type_into(window: &mut Window, field: &str, text: &str) {
+pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
     window.get_by_label(field).focus();
     window.run_steps(2);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);

@@ -9,6 +9,7 @@ use gdcm_core::dataset::RecordKind;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
+use super::assembling::type_into;
 use super::views::{give, show};
 use super::*;
 use crate::made_up::{Flight, Gusts, stable_aircraft};
@@ -73,6 +74,40 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
     assert_eq!(identified_models(&window), before);
     give(&mut window, gdcm::view::command::Command::Undo);
     assert_eq!(identified_models(&window), taken);
+}
+
+#[test]
+fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_place() {
+    let mut window = records_window();
+    let part = |window: &Window, index: usize| {
+        let row = &state(window).records.conditions[&CONDITION_10_ID].rows[index];
+        (row.table.part_s, row.used, row.flight.as_ref().map_or(0, |flight| flight.time_s.len()))
+    };
+    assert_eq!(part(&window, 0), (None, true, 3001));
+    type_into(&mut window, "Part of the record", "5 25");
+    assert_eq!(part(&window, 0), (None, false, 3001), "the whole counts no more");
+    assert_eq!(part(&window, 1), (Some([5.0, 25.0]), true, 1001), "20 s at 50 Hz");
+    click(&mut window, "drag parts");
+    let chart = window.get_by_label_contains("LON [%]").rect();
+    let [from, to] = [0.6, 0.8].map(|share| egui::pos2(chart.left() + share * chart.width(), chart.center().y));
+    window.drag_at(from);
+    window.run_steps(2);
+    window.hover_at(to);
+    window.run_steps(2);
+    window.drop_at(to);
+    window.run_steps(3);
+    assert_eq!(rows(&window), 11);
+    let (Some([first, last]), true, samples) = part(&window, 2) else { panic!("{:?}", part(&window, 2)) };
+    assert!(first > 25.0 && last > first && samples > 200, "{first} to {last} s, {samples} samples");
+    click(&mut window, "Record cond10_sweep_COL_1, 5 to 25 s");
+    click(&mut window, "Remove part");
+    assert_eq!((rows(&window), part(&window, 1).0), (10, Some([first, last])));
+    // What is searched is typed too, and what cannot be is refused.
+    click(&mut window, "Advanced");
+    type_into(&mut window, "Orders", "8 10");
+    assert_eq!(state(&window).records.conditions[&CONDITION_10_ID].search.orders, [8, 10]);
+    type_into(&mut window, "Past windows", "0");
+    assert!(state(&window).records.conditions[&CONDITION_10_ID].search.pasts.is_empty());
 }
 
 #[test]

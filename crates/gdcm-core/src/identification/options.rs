@@ -65,12 +65,35 @@ impl Options {
     }
 }
 
+/// What is tried in place of the defaults; an empty list leaves them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SearchSpace {
+    /// Orders.
+    pub orders: Vec<usize>,
+    /// Past windows, in Laguerre projections.
+    pub pasts: Vec<usize>,
+    /// Laguerre poles \[rad/s\].
+    pub poles: Vec<f64>,
+}
+
+impl SearchSpace {
+    /// Sets what is tried.
+    pub fn set(&self, options: &mut Options) {
+        let said = |list: &[usize]| (!list.is_empty()).then(|| list.to_vec());
+        options.orders = said(&self.orders).or(options.orders.take());
+        options.pasts = said(&self.pasts).or(options.pasts.take());
+        if !self.poles.is_empty() {
+            options.poles = self.poles.iter().map(|pole| pole / options.band[1]).collect();
+        }
+    }
+}
+
 // Why nothing could be identified.
 
 /// The highest order that may be asked for.
-pub(super) const HIGHEST_ORDER: usize = 60;
+pub const HIGHEST_ORDER: usize = 60;
 /// The longest past window that may be asked for.
-pub(super) const LONGEST_PAST: usize = 60;
+pub const LONGEST_PAST: usize = 60;
 
 /// Why nothing could be identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

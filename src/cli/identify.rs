@@ -30,7 +30,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let mut destination = Destination::asked(arguments)?;
     let band = band(arguments, destination.as_ref())?;
     let mut channels = channels(arguments, destination.as_ref(), band)?;
-    let (tasks, unread, reading) = tasks(arguments, destination.as_ref(), &mut channels, band)?;
+    let Tasks { tasks, unread, reading } = tasks(arguments, destination.as_ref(), &mut channels, band)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
@@ -155,13 +155,22 @@ fn label(condition: Option<ConditionId>) -> String {
     condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
 
-/// What is to be identified: all records together, or those of each condition; the files of which no record came; what was chosen.
+/// What is to be identified.
+struct Tasks {
+    tasks: Vec<IdentificationTask>,
+    /// The files of which no record came.
+    unread: Vec<PathBuf>,
+    /// What was chosen and done while the records were read.
+    reading: Vec<String>,
+}
+
+/// What is to be identified: all records together, or those of each condition.
 fn tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
     channels: &mut RecordChannels,
     band: Band,
-) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>, Vec<String>), Failure> {
+) -> Result<Tasks, Failure> {
     let ReadRecords { mut records, unread, reading } = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
     let mut preparation = preparation(channels, &arguments.delay)?;
@@ -177,7 +186,7 @@ fn tasks(
         }
     };
     let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band, arguments));
-    Ok((tasks.collect::<Result<_, _>>()?, unread, reading))
+    Ok(Tasks { tasks: tasks.collect::<Result<_, _>>()?, unread, reading })
 }
 
 /// Where what was found is written: a file for each condition where there are many.

@@ -144,7 +144,7 @@ impl BackgroundJobs {
         };
         let identifications = JobKind {
             tell: |queue, background| background.identification = queue.progress(),
-            withdraw: Some(|app| app.state.records.running.clear()),
+            withdraw: Some(|app| app.stop_identifying()),
             ..JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified)
         };
         let kinds = vec![

@@ -48,7 +48,7 @@ impl GdcmApp {
                 let all: Vec<ConditionId> = all.map(|(id, _)| *id).collect();
                 self.identify_conditions(&all);
             }
-            RecordsCommand::Stop => self.state.records.running.clear(),
+            RecordsCommand::Stop => self.stop_identifying(),
             RecordsCommand::Take(offered) => self.take_identified(&[condition], offered),
             RecordsCommand::TakeAll(offered) => {
                 let all: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
@@ -142,14 +142,28 @@ impl GdcmApp {
         self.done(format!("{count} records{of}"));
     }
 
+    /// Gives up what is under way and what waits; it can be begun again.
+    pub(super) fn stop_identifying(&mut self) {
+        let left = std::mem::take(&mut self.state.records.running).len();
+        let asked = self.state.records.asked;
+        if asked > 1 && left > 0 {
+            self.done(format!("stopped identifying after {} of {asked} conditions", asked.saturating_sub(left)));
+        }
+    }
+
     fn identify_conditions(&mut self, conditions: &[ConditionId]) {
         let band = self.state.study.settings.band;
+        if self.state.records.running.is_empty() {
+            self.state.records.asked = 0;
+        }
         let mut refusal = None;
         for id in conditions {
             let Some(records) = self.state.records.conditions.get(id) else { continue };
             match records.job(*id, [band.min(), band.max()]) {
                 Ok(job) => {
+                    let waiting = self.state.records.running.len();
                     self.state.records.running.retain(|other| other.condition != *id);
+                    self.state.records.asked += usize::from(waiting == self.state.records.running.len());
                     self.state.records.running.push(job);
                 }
                 Err(why) => refusal = Some(format!("condition {id}: {why}")),
@@ -171,6 +185,9 @@ impl GdcmApp {
             return;
         }
         self.state.records.running.retain(|other| *other != job);
+        if self.state.records.running.is_empty() && self.state.records.asked > 1 {
+            self.done(format!("identified models of {} conditions", self.state.records.asked));
+        }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
             records.changed = false;
             records.found = Some((job, found));

@@ -16,8 +16,8 @@ use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
 
 use super::{
     ChannelConversion, ChannelDelay, ChannelList, ChannelTopic, Destination, Failure, Group, IdentifyArguments,
-    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table,
-    relative_entry, said_conditions, say,
+    ReadRecords, TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths,
+    record_table, relative_entry, said_conditions, say,
 };
 
 /// The file of what was found.
@@ -30,7 +30,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let mut destination = Destination::asked(arguments)?;
     let band = band(arguments, destination.as_ref())?;
     let mut channels = channels(arguments, destination.as_ref(), band)?;
-    let (tasks, unread) = tasks(arguments, destination.as_ref(), &mut channels, band)?;
+    let Tasks { tasks, unread, reading } = tasks(arguments, destination.as_ref(), &mut channels, band)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
@@ -54,7 +54,13 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         let of_model = without_references(&channels, arguments);
         of_use |= (0..of_model.inputs.len()).any(|input| is_identified(&found, input, of_model.outputs.len()));
         make_directory(&arguments.out)?;
-        let models = IdentifiedModels { found: &found, channels: &of_model, records: &records, cautions: &of_task };
+        let models = IdentifiedModels {
+            found: &found,
+            channels: &of_model,
+            records: &records,
+            cautions: &of_task,
+            reading: &reading,
+        };
         add_identified(&models, file, &mut outputs)?;
         if let (Some(destination), Some(condition)) = (&mut destination, task.condition) {
             let entries = records.into_iter().map(|of| relative_entry(of, &arguments.records, &destination.path));
@@ -158,14 +164,23 @@ fn label(condition: Option<ConditionId>) -> String {
     condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
 
-/// What is to be identified: all records together, or those of each condition; and the files of which no record came.
+/// What is to be identified.
+struct Tasks {
+    tasks: Vec<IdentificationTask>,
+    /// The files of which no record came.
+    unread: Vec<PathBuf>,
+    /// What was chosen and done while the records were read.
+    reading: Vec<String>,
+}
+
+/// What is to be identified: all records together, or those of each condition.
 fn tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
     channels: &mut RecordChannels,
     band: Band,
-) -> Result<(Vec<IdentificationTask>, Vec<PathBuf>), Failure> {
-    let (mut records, unread) = laid_out(arguments, channels)?;
+) -> Result<Tasks, Failure> {
+    let ReadRecords { mut records, unread, reading } = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
     let mut preparation = preparation(channels, &arguments.delay)?;
     hold(&mut preparation, &records, channels);
@@ -180,7 +195,7 @@ fn tasks(
         }
     };
     let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band, arguments));
-    Ok((tasks.collect::<Result<_, _>>()?, unread))
+    Ok(Tasks { tasks: tasks.collect::<Result<_, _>>()?, unread, reading })
 }
 
 /// Where what was found is written: a file for each condition where there are many.

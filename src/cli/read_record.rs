@@ -13,14 +13,24 @@ use gdcm_files::{FoundRecords, read_records, relative_folder};
 
 use super::{Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, error, indented, note};
 
-/// Every record with its columns, and the files named of which none came; what was chosen, and what is wrong, is told on standard error.
-pub(super) fn laid_out(
-    arguments: &IdentifyArguments,
-    channels: &mut RecordChannels,
-) -> Result<(Vec<LaidOutRecord>, Vec<PathBuf>), Failure> {
+/// The records that were read.
+pub(super) struct ReadRecords {
+    /// Every record with its columns.
+    pub(super) records: Vec<LaidOutRecord>,
+    /// The files named of which none came.
+    pub(super) unread: Vec<PathBuf>,
+    /// What was chosen and done while they were read.
+    pub(super) reading: Vec<String>,
+}
+
+/// Reads the records; what was chosen, and what is wrong, is told on standard error.
+pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChannels) -> Result<ReadRecords, Failure> {
     let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
-    let tables = with_topics_joined(tables(arguments)?, channels, &wish);
+    let tables = tables(arguments)?;
+    let unread = unread(&arguments.records, &tables);
+    let mut reading = Vec::new();
+    let tables = with_topics_joined(tables, channels, &wish);
     for table in parts(tables, &arguments.part)? {
         let (record, notes) = LaidOutRecord::proposed(table, channels, &wish);
         // A part is of those records that have samples then.
@@ -29,9 +39,14 @@ pub(super) fn laid_out(
             continue;
         }
         let name = &record.table.name;
+        // What a log is, and the signs of its system, no other file tells.
+        let is_log = record.table.columns.iter().any(|column| column.topic.is_some() || column.meaning.is_some());
+        let of_log = record.table.notes.iter().filter(|_| is_log).cloned();
+        let notes: Vec<String> = of_log.chain(notes).collect();
         // Records of one flight are alike: what is chosen is said once.
         if notes != told {
-            notes.iter().for_each(|words| note(&format!("{name}: {words}")));
+            let words = notes.iter().map(|words| format!("{name}: {words}"));
+            reading.extend(words.inspect(|words| note(words)));
             told = notes;
         }
         record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
@@ -50,7 +65,6 @@ pub(super) fn laid_out(
         *record = LaidOutRecord::new(record.table.clone(), record.layout.clone(), record.guess.clone(), channels);
         record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
     }
-    let unread = unread(&arguments.records, &records);
     leave_out_copies(&mut records);
     for copy in records.iter().filter(|record| !record.used) {
         let why = copy.cautions.last().map(ToString::to_string).unwrap_or_default();
@@ -58,14 +72,17 @@ pub(super) fn laid_out(
     }
     records.retain(|record| record.used);
     let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
-    if wrong > 0 { Err(Failure::Records { wrong, of: records.len() }) } else { Ok((records, unread)) }
+    if wrong > 0 {
+        Err(Failure::Records { wrong, of: records.len() })
+    } else {
+        Ok(ReadRecords { records, unread, reading })
+    }
 }
 
 /// The files named on the command line of which no record came.
-fn unread(named: &[PathBuf], records: &[LaidOutRecord]) -> Vec<PathBuf> {
-    let came = |path: &&PathBuf| {
-        records.iter().any(|record| Path::new(&record.table.source.file).file_name() == path.file_name())
-    };
+fn unread(named: &[PathBuf], tables: &[RecordTable]) -> Vec<PathBuf> {
+    let came =
+        |path: &&PathBuf| tables.iter().any(|table| Path::new(&table.source.file).file_name() == path.file_name());
     named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
 }
 

@@ -166,7 +166,7 @@ pub enum Command {
 }
 
 /// A form in front of the window.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
     /// Which file to open, by path.
     Open,

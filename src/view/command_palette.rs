@@ -9,6 +9,8 @@ use super::{
     BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text, row_text_within, row_ui,
 };
 
+/// Height of the list \[pt\].
+const HEIGHT: f32 = 340.0;
 /// Rows that are drawn: whoever looks for more types another letter.
 const MOST_ROWS: usize = 60;
 
@@ -43,7 +45,8 @@ pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: 
         ui.label(RichText::new("No command has these letters").color(palette.dim_text));
     }
     let mut taken = found.get(chosen).filter(|_| entered).copied();
-    ScrollArea::vertical().max_height(340.0).auto_shrink([false, true]).show(ui, |ui| {
+    // As high whatever is found, so that the field stays in its place while letters are typed.
+    ScrollArea::vertical().max_height(HEIGHT).min_scrolled_height(HEIGHT).auto_shrink(false).show(ui, |ui| {
         for (row, &place) in found.iter().enumerate() {
             let response = entry_ui(ui, &entries[place], row == chosen, palette);
             if response.clicked() {

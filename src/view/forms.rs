@@ -25,7 +25,8 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     };
     let asks_to_overwrite = !state.forms.existing.is_empty();
     let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
-    let modal = Modal::new(Id::unique("form")).show(ctx, |ui| {
+    // A form has an id of its own: the size of one is not that of another.
+    let modal = Modal::new(Id::unique(("form", kind, asks_to_overwrite))).show(ctx, |ui| {
         ui.set_width(460.0);
         let form = &mut Form { ui, opens, palette, commands };
         match kind {

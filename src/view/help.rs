@@ -148,7 +148,7 @@ const MARKS: &[(&str, &str)] = &[
 /// Every key of the table of commands, the gestures, and the marks.
 pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let room = ui.ctx().content_rect().height() - 120.0;
-    ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+    ScrollArea::vertical().max_height(room).min_scrolled_height(room).auto_shrink([false, true]).show(ui, |ui| {
         let keys: Vec<(String, String)> = command_table(state)
             .into_iter()
             .filter(|entry| !entry.shortcuts.is_empty())

@@ -27,6 +27,8 @@ pub struct IdentifiedModels<'f> {
     pub records: &'f [ConditionRecord],
     /// What is to be minded.
     pub cautions: &'f [CautionNote],
+    /// What was assumed and what was done while the records were read.
+    pub reading: &'f [String],
 }
 
 #[derive(Serialize)]
@@ -39,6 +41,7 @@ struct IdentifiedText<'m> {
     validation: ValidationText<'m>,
     records: Vec<RecordText<'m>>,
     cautions: Vec<CautionText<'m>>,
+    reading: &'m [String],
 }
 
 #[derive(Serialize)]
@@ -92,6 +95,9 @@ struct RecordText<'m> {
     #[serde(skip_serializing_if = "Option::is_none")]
     variable: Option<&'m str>,
     held_out: bool,
+    /// First and last time of the part of what the file holds that is the record.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    part_s: Option<[f64; 2]>,
     /// First and last time of each part that was used.
     used_s: &'m [[f64; 2]],
     /// Why a part of it was not used.
@@ -134,6 +140,7 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
         },
         records: of.records.iter().enumerate().map(|(index, record)| record_text(found, index, record)).collect(),
         cautions: of.cautions.iter().map(caution_text).collect(),
+        reading: of.reading,
     };
     outputs.add(path, |file| {
         serde_json::to_writer(&mut *file, &text)?;
@@ -185,6 +192,7 @@ fn record_text<'m>(found: &Identification, index: usize, record: &'m ConditionRe
         sha256: record.sha256.as_deref(),
         variable: record.variable.as_deref(),
         held_out: record.held_out,
+        part_s: record.part_s,
         used_s: &record.used_s,
         why_not: Some(gaps.join("; ")).filter(|words| !words.is_empty()),
     }
@@ -262,7 +270,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("identified.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
-        let models = IdentifiedModels { found: &found(), channels: &channels, records: &[record], cautions };
+        let models =
+            IdentifiedModels { found: &found(), channels: &channels, records: &[record], cautions, reading: &[] };
         add_identified(&models, &path, &mut outputs).unwrap();
         outputs.persist().unwrap();
         std::fs::read(path).unwrap()

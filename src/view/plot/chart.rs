@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Align2, Color32, Id, Rect, Response, Sense, Stroke, TextureId, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2, vec2,
+    Align2, Color32, Id, Pos2, Rect, Response, Sense, Stroke, TextureId, Ui, UiBuilder, Vec2, Vec2b, WidgetInfo, pos2,
+    vec2,
 };
 use egui_plot::{
     Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotImage, PlotPoint, PlotPoints, PlotUi, Points, Span, VLine,
@@ -196,14 +197,18 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
 type Stretch = ([f64; 2], bool);
 
 fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
-    let (response, id) = (plot.response().clone(), group.with("stretch"));
-    let Some(at) = response.interact_pointer_pos().map(|at| plot.plot_from_screen(at).x) else { return };
+    let response = plot.response();
+    if !response.dragged() && !response.drag_stopped() {
+        return;
+    }
+    let place = |at: Pos2| plot.plot_from_screen(at).x;
+    // A drag is known as one some points after the button went down.
+    let (from, to) = plot.ctx().input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
     plot.ctx().data_mut(|data| {
-        let stretch: Option<Stretch> = data.get_temp(id);
-        let from = stretch.map(|([from, _], _)| from).filter(|_| !response.drag_started());
-        if response.dragged() || response.drag_stopped() {
-            data.insert_temp::<Stretch>(id, ([from.unwrap_or(at), at], response.drag_stopped()));
-        }
+        let began = data.get_temp::<Stretch>(group.with("stretch")).map(|([from, _], _)| from);
+        let Some(from) = from.map(place).or(began) else { return };
+        let to = to.map_or(from, place);
+        data.insert_temp::<Stretch>(group.with("stretch"), ([from, to], response.drag_stopped()));
     });
 }
 

@@ -246,6 +246,8 @@ pub struct RecordsState {
     pub faults: Vec<String>,
     /// What is being identified, and what is to be.
     pub running: Vec<IdentifyJob>,
+    /// How many conditions were asked for since nothing was running.
+    pub asked: usize,
 }
 
 impl RecordsState {

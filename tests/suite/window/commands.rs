@@ -65,8 +65,11 @@ fn the_palette_is_worked_with_arrows_and_escape() {
     let before = state(&window).study.clone();
     press(&mut window, Modifiers::COMMAND, Key::K);
     assert_eq!(state(&window).forms.shown, Some(FormKind::Palette));
+    let field = |window: &Window| window.get_by_label("Command palette").rect();
+    let place = field(&window);
     window.event(Event::Text("theme".to_owned()));
-    window.run_steps(2);
+    window.run_steps(4);
+    assert_eq!(field(&window), place, "the field stays in its place while letters are typed");
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
     press(&mut window, Modifiers::NONE, Key::ArrowUp);

@@ -154,6 +154,8 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     window.get_by_label("Stop identifying").click();
     window.run_steps(2);
     assert!(state(&window).records.running.is_empty());
+    window.get_by_label_contains("stopped identifying after");
+    window.get_by_label("Identify all 2 conditions");
 }
 
 #[test]

@@ -271,7 +271,8 @@ const LEAST_RANGE: f64 = 1.5;
 
 /// The fault of a channel whose samples cannot be in its unit.
 pub(super) fn magnitude(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
-    let column = table.columns.get(used.column)?;
+    // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
+    let column = table.columns.get(used.column).filter(|column| column.meaning.is_none())?;
     let (least, most) = column.range()?;
     let value = least.abs().max(most.abs()) * used.factor.abs();
     let unit = PhysicalUnit::of(&rule.unit)?;

@@ -25,12 +25,15 @@ fn channels() -> RecordChannels {
     }
 }
 
-/// The record of a table, by the layout proposed; of columns without names it is said which is which.
+/// The record of a table, by the layout proposed; of columns without names it is said which is which, and that "az" is up.
 fn flight(table: &RecordTable) -> gdcm_core::identification::FlightRecord {
     let mut channels = channels();
     let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
     for (index, rule) in rules.enumerate().filter(|_| !table.named) {
         rule.aliases.push(format!("#{}", index + 2));
+    }
+    if table.find("az").is_some() {
+        channels.outputs[1].aliases.push("az".to_owned());
     }
     let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
     assert_eq!(proposal.problems, [], "{}", table.name);

@@ -51,11 +51,12 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
         let of_task: Vec<CautionNote> = found.cautions.iter().map(IdentificationCaution::note).chain(late).collect();
         cautions.extend(of_task.iter().map(|of| (task.condition, of.text.clone())));
-        of_use |= (0..channels.inputs.len()).any(|input| is_identified(&found, input, channels.outputs.len()));
+        let of_model = without_references(&channels, arguments);
+        of_use |= (0..of_model.inputs.len()).any(|input| is_identified(&found, input, of_model.outputs.len()));
         make_directory(&arguments.out)?;
         let models = IdentifiedModels {
             found: &found,
-            channels: &channels,
+            channels: &of_model,
             records: &records,
             cautions: &of_task,
             reading: &reading,
@@ -89,6 +90,13 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     if unread.is_empty() { Ok(()) } else { Err(Failure::Unread { paths: listed_paths(&unread) }) }
 }
 
+/// The channels of the models: references are none.
+fn without_references(channels: &RecordChannels, arguments: &IdentifyArguments) -> RecordChannels {
+    let mut of_model = channels.clone();
+    of_model.inputs.truncate(channels.inputs.len() - arguments.references().len());
+    of_model
+}
+
 /// Whether the records say anything of an input: the others do not explain it, and a response to it is known (M14).
 fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     let is_swept = found.measured.excitation().not_identified().all(|of| of != input);
@@ -115,6 +123,7 @@ impl IdentificationTask {
         let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
         let mut request = request.map_err(refused)?;
         arguments.search().set(&mut request.options);
+        request.options.references = arguments.references().len();
         Ok(Self { request, condition, records })
     }
 
@@ -215,6 +224,14 @@ fn channels(
     band: Band,
 ) -> Result<RecordChannels, Failure> {
     let mut channels = named_channels(arguments, destination)?;
+    for (name, column) in arguments.references() {
+        if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *name) {
+            let reason = format!("{name} is an input or an output already; a reference is neither");
+            return Err(Failure::Option { option: "--reference", reason });
+        }
+        // Read as an input, after those of the model.
+        channels.inputs.push(with_column(ChannelRule::named(name.clone()), column.as_ref()));
+    }
     let unknown =
         |option, channel: &String| Failure::Option { option, reason: format!("{channel} is none of the channels") };
     for ChannelTopic { channel, column } in &arguments.topic {

@@ -57,6 +57,9 @@ pub struct IdentifyArguments {
     /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
+    /// Recorded references that drove the loop from outside (a chirp, a position reference), in the same way as inputs: gusts fed back into the inputs no longer bias the response.
+    #[arg(long, value_name = "NAMES")]
+    pub reference: Option<ChannelList>,
     /// Order of the model, in place of those that the records can carry; may be repeated.
     #[arg(long, value_name = "N", value_parser = whole_number::<1, 60>)]
     pub order: Vec<usize>,
@@ -96,6 +99,11 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
+    /// The references, each with its column where one is said.
+    pub fn references(&self) -> &[(String, Option<String>)] {
+        self.reference.as_ref().map_or(&[], |list| &list.channels)
+    }
+
     /// What is tried in place of the defaults.
     pub fn search(&self) -> SearchSpace {
         SearchSpace { orders: self.order.clone(), pasts: self.past.clone(), poles: self.pole.clone() }

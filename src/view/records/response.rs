@@ -8,7 +8,8 @@ use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, char
 use crate::view::{Palette, SMALL_SIZE, State};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
-    Identification, PoleEstimate, StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
+    EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
+    TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
 };
 use gdcm_core::response::{ResponseShape, evaluate};
 use gdcm_core::units::neper_to_db;
@@ -33,7 +34,13 @@ struct DrawnResponse {
     /// Standard deviations \[dB, deg\] of the same.
     bands: Vec<[f64; 2]>,
     unrefined: Curve,
+    /// Where the recommended model leaves the measured points \[rad/s\] (M14.17).
+    left: Vec<[f64; 2]>,
 }
+
+/// Half height of the mark where the model leaves the points \[dB, deg\].
+const LEFT_DB: f64 = 2.0;
+const LEFT_DEG: f64 = 15.0;
 
 /// Magnitude above, phase below; the first model while it is being refined.
 pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
@@ -79,7 +86,7 @@ fn legend_ui(ui: &mut Ui, palette: &Palette) {
             ("— CT-PBSID, refined, with its 95 % band", palette.identified),
             ("- - CT-PBSID", palette.accent),
             ("● measured (local polynomial), ± 1.96 sd", palette.text),
-            ("○ partial coherence below 0.6", palette.dim_text),
+            ("○ partial coherence below 0.6, or of few lines", palette.dim_text),
         ] {
             ui.add(Label::new(RichText::new(text).size(SMALL_SIZE).color(color)).extend());
         }
@@ -108,6 +115,13 @@ fn chart_of<'a>(
     };
     chart.lines =
         vec![line(&drawn.unrefined, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
+    for left in &drawn.left {
+        // Where the model leaves the points: a bar across the plot.
+        let near = drawn.recommended.iter().filter(|at| (left[0]..=left[1]).contains(&at[0]));
+        let half = if part == 1 { LEFT_DB } else { LEFT_DEG };
+        let points = near.map(|at| [at[0], at[part] - half, at[part] + half]).collect();
+        chart.bands.push(ChartBand { points, color: palette.warning.gamma_multiply(0.25) });
+    }
     for trusted in [false, true] {
         let points = drawn.measured.iter().filter(|(.., of)| *of == trusted);
         let points = points.map(|(at, sd, _)| [at[0], at[part], TWO_SIDED_95 * sd[part - 1]]).collect();
@@ -120,7 +134,8 @@ fn chart_of<'a>(
 fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
     let (points, at) = (&found.measured.points, (pair.output, pair.input));
     let sds = points.iter().map(|point| Some(point.sd(at)).filter(|sd| sd.is_finite()).unwrap_or(0.0));
-    let trusted = points.iter().map(|point| point.partial_coherence[at] >= TRUSTED_COHERENCE);
+    let is_narrow = |point: &EstimatePoint| point.half_width <= NARROW_WINDOW * point.omega;
+    let trusted = points.iter().map(|point| point.partial_coherence[at] >= TRUSTED_COHERENCE && is_narrow(point));
     let measured = shape(points.iter().map(|point| (point.omega, point.response[at])), None);
     let measured: Vec<_> = measured
         .into_iter()
@@ -129,6 +144,12 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
         .collect();
     let reference = measured.iter().find(|(.., trusted)| *trusted).map(|(at, ..)| *at);
     let bands = found.refined.bands.as_ref();
+    let left = found.cautions.iter().filter_map(|caution| match caution {
+        IdentificationCaution::LeavesPoints { output, input, band, .. } if (output.index, input.index) == at => {
+            Some(*band)
+        }
+        _ => None,
+    });
     let sd = bands.into_iter().flat_map(|bands| bands.sd_db()[pair].iter().zip(&bands.sd_deg()[pair]));
     let omega = bands.map_or(&[][..], |bands| bands.omega());
     DrawnResponse {
@@ -136,6 +157,7 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
         bands: sd.map(|(db, deg)| [*db, *deg]).collect(),
         unrefined: found.unrefined.state_space().map_or_else(Curve::new, |of| model_curve(of, band, pair, reference)),
         measured,
+        left: left.collect(),
     }
 }
 

@@ -253,7 +253,7 @@ pub enum PreparationError {
     },
     /// Sample times vary too much.
     #[error(
-        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Allow resampling if the stamps can be trusted"
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Where the stamps can be trusted, say a rate to interpolate to (--resample)"
     )]
     UnevenSampling {
         /// The record's name.

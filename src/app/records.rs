@@ -139,7 +139,8 @@ impl GdcmApp {
             return;
         }
         let of = if conditions == 1 { String::new() } else { format!(" of {conditions} conditions") };
-        self.done(format!("{count} records{of}"));
+        let records = if count == 1 { "record" } else { "records" };
+        self.done(format!("{count} {records}{of}"));
     }
 
     /// Gives up what is under way and what waits; it can be begun again.

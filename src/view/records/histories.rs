@@ -4,14 +4,14 @@ use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-use egui::{ColorImage, Id, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{ColorImage, Id, Label, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, vec2};
 
 use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch};
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
-use gdcm_core::records::Spectrogram;
+use gdcm_core::records::{ModeSpan, Spectrogram};
 
 use super::advanced::numbers;
 use super::{ConditionRecords, Page, RecordsCommand, simulated, time_models_ui};
@@ -31,7 +31,8 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
     let names =
         dataset.inputs().iter().chain(dataset.outputs()).map(|channel| format!("{} [{}]", channel.name, channel.unit));
     let names: Vec<String> = names.collect();
-    let mut gaps = spans(records, palette);
+    let mut gaps = modes_ui(ui, &row.table.modes, palette);
+    gaps.extend(spans(records, palette));
     ui.horizontal_wrapped(|ui| {
         time_models_ui(ui, state, palette, commands);
         spectrogram_choice_ui(ui, page, commands);
@@ -169,6 +170,17 @@ fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
     let points: Vec<[f64; 2]> = flight.time_s.iter().enumerate().map(|(at, time)| [*time, value(at)]).collect();
     let runs = points.split(|point| point.iter().any(|value| !value.is_finite()));
     runs.filter(|run| !run.is_empty()).map(Arc::from).collect()
+}
+
+/// The modes of the system that logged the record, every other one shaded, named above the charts.
+fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
+    let named = modes.iter().map(|of| format!("{} {:.1} to {:.1} s", of.name, of.ends_s[0], of.ends_s[1]));
+    let words = named.collect::<Vec<_>>().join(" · ");
+    if !words.is_empty() {
+        ui.add(Label::new(palette.small(&words)).truncate()).on_hover_text(words);
+    }
+    let shade = |at: usize| palette.dim_text.gamma_multiply(if at.is_multiple_of(2) { 0.06 } else { 0.14 });
+    modes.iter().enumerate().map(|(at, of)| ChartSpan { ends: of.ends_s, color: shade(at) }).collect()
 }
 
 /// The parts of the record shown that are records of their own; what was bridged and what was cut out of it.

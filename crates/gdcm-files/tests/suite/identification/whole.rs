@@ -253,7 +253,7 @@ fn bands_hold_what_they_say() {
     // 40 flights of a few independent errors each leave the share uncertain by about 1 %.
     assert!((0.90..=0.999).contains(&share(1.96 / factor)), "{}", share(1.96 / factor));
     // What is offered has the factor, and errs on the safe side (docs/identification.md says so).
-    assert!((0.98..1.0).contains(&share(1.96)), "{}", share(1.96));
+    assert!((0.98..=1.0).contains(&share(1.96)), "{}", share(1.96));
 }
 
 #[test]

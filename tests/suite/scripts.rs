@@ -173,3 +173,102 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     let nothing = desk.gdcm(&["convert", "broken.npz", "--out", "models.json"]);
     assert!(nothing.status != 0 && !nothing.error.contains("FILE"), "{nothing:?}");
 }
+
+/// Words that command lines are made of: commands, options, values that belong to some of them, and values that belong to none.
+const WORDS: [&str; 72] = [
+    "analyze",
+    "check",
+    "convert",
+    "export",
+    "figure",
+    "identify",
+    "assemble",
+    "report",
+    "example",
+    "small.json",
+    "half.json",
+    "a.csv",
+    "missing.json",
+    "no\u{1b}[2J.json",
+    ".",
+    "--out",
+    "out",
+    "out.json",
+    "out.svg",
+    "out.m",
+    "--as",
+    "m",
+    "mat",
+    "state-space",
+    "--view",
+    "bode",
+    "net-gain",
+    "--condition",
+    "1",
+    "10",
+    "11",
+    "--alpha",
+    "1e-12",
+    "-1",
+    "nan",
+    "1e999",
+    "--band",
+    "0.5",
+    "12",
+    "--points",
+    "2",
+    "100000000000",
+    "--degree",
+    "table",
+    "--inputs",
+    "LON,LAT",
+    "LON=#2",
+    "NZ=-az",
+    "--outputs",
+    "P,Q",
+    "--hold-out",
+    "--part",
+    "0:1",
+    "5:1",
+    "--order",
+    "--unit",
+    "P=rad/s",
+    "--factor",
+    "P=0",
+    "--sign",
+    "NZ=-1",
+    "--reject",
+    "10:V+10kt",
+    "--into",
+    "--force",
+    "--json",
+    "--quiet",
+    "--second-variable",
+    "altitude",
+    "--leave-one-out",
+    "--headings",
+    "\u{2212}",
+];
+
+#[test]
+fn command_lines_put_together_at_random_end_with_a_status_and_words() {
+    let desk = desk_with_half();
+    write_record(&desk);
+    let mut state = 1_u64;
+    let mut below = |bound: usize| {
+        // The generator of Knuth (MMIX), of which the upper bits are used.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % bound
+    };
+    for _ in 0..if std::env::var_os("GDCM_THOROUGH").is_some() { 2000 } else { 100 } {
+        let mut line = vec![WORDS[below(9)]];
+        line.extend((0..1 + below(7)).map(|_| WORDS[9 + below(WORDS.len() - 9)]));
+        let ended = desk.gdcm(&line);
+        assert!((0..=2).contains(&ended.status), "{line:?}: {ended:?}");
+        let is_told = ended.status == 0 || ended.error.contains("error: ") || ended.out.contains("\"errors\"");
+        assert!(is_told && !ended.error.contains("panicked"), "{line:?}: {ended:?}");
+        let printed = [&ended.out, &ended.error].into_iter().flat_map(|text| text.chars());
+        assert!(printed.into_iter().all(|letter| letter == '\n' || !letter.is_control()), "{line:?}: {ended:?}");
+        fs::write(desk.path("small.json"), include_str!("../data/small-dataset.json")).unwrap();
+    }
+}

@@ -193,7 +193,7 @@ fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: 
     let mut rules = assembly.assembly().rules().clone();
     Grid::new("signs of channels").num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
         for (name, place) in places {
-            ui.label(palette.small(name));
+            ui.label(palette.small(name.to_lowercase()));
             if let Some(text) = entry_ui(ui, name, &trim_words(place(&mut rules)), "NZ -1", 160.0) {
                 commands.push(match signs_of(&text) {
                     Ok(signs) => assembly.changed(|rules| *place(rules) = signs),

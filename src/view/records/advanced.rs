@@ -20,15 +20,15 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
     let said = records.band.map_or_else(String::new, |[low, high]| format!("{} {}", number(low), number(high)));
     let search = &records.search;
     let lists: [(&str, String, &str, Sets); 3] = [
-        ("Orders", listed(&search.orders), "by the records: 1 to 24", |search, list| {
+        ("orders", listed(&search.orders), "by the records: 1 to 24", |search, list| {
             search.orders = whole(list, HIGHEST_ORDER)?;
             Ok(())
         }),
-        ("Past windows", listed(&search.pasts), "by the records: 8 to 24", |search, list| {
+        ("past windows", listed(&search.pasts), "by the records: 8 to 24", |search, list| {
             search.pasts = whole(list, LONGEST_PAST)?;
             Ok(())
         }),
-        ("Laguerre poles [rad/s]", listed(&search.poles), "0.375, 0.54, 0.75 of the band's end", |search, list| {
+        ("Laguerre poles", listed(&search.poles), "0.375, 0.54, 0.75 of the band's end", |search, list| {
             let wrong = list.iter().find(|pole| **pole <= 0.0);
             search.poles = list.to_vec();
             wrong.map_or(Ok(()), |pole| Err(format!("a pole is positive, found {}", number(*pole))))
@@ -37,7 +37,7 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
     let header = CollapsingHeader::new(palette.small("Advanced")).id_salt("advanced identification");
     header.show(ui, |ui| {
         Grid::new("advanced identification").num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
-            if let Some(text) = field_ui(ui, "Band of the identification [rad/s]", &said, &of_study, palette) {
+            if let Some(text) = field_ui(ui, "band [rad/s]", &said, &of_study, palette) {
                 commands.push(match numbers(&text).and_then(|list| band_of(&list)) {
                     Ok(band) => RecordsCommand::SetBand(band).into(),
                     Err(why) => Command::Refuse(why),
@@ -61,7 +61,7 @@ type Sets = fn(&mut SearchSpace, &[f64]) -> Result<(), String>;
 
 fn field_ui(ui: &mut Ui, name: &str, said: &str, hint: &str, palette: &Palette) -> Option<String> {
     ui.label(palette.small(name));
-    let text = entry_ui(ui, name, said, hint, FIELD_WIDTH);
+    let text = entry_ui(ui, &format!("Identification: {name}"), said, hint, FIELD_WIDTH);
     ui.end_row();
     text
 }

@@ -104,9 +104,9 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
     assert_eq!((rows(&window), part(&window, 1).0), (10, Some([first, last])));
     // What is searched is typed too, and what cannot be is refused.
     click(&mut window, "Advanced");
-    type_into(&mut window, "Orders", "8 10");
+    type_into(&mut window, "Identification: orders", "8 10");
     assert_eq!(state(&window).records.conditions[&CONDITION_10_ID].search.orders, [8, 10]);
-    type_into(&mut window, "Past windows", "0");
+    type_into(&mut window, "Identification: past windows", "0");
     assert!(state(&window).records.conditions[&CONDITION_10_ID].search.pasts.is_empty());
 }
 

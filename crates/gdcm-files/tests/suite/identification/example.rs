@@ -70,12 +70,10 @@ fn assert_models_come_again(id: i64) {
     let bundle = condition.bundle(BundleKind::Identified);
     // Where two orders are as good as one another, the rounding of another processor's instructions may choose the other one. The
     // variance of the bands is twice that of the fit plus twice the square of what neighbouring orders differ by, so that a neighbour
-    // is within 1 / sqrt 2 of a standard deviation. The same order again is within 0.4: the refinement ends where it gains less than a
-    // thousandth, by ways that rounding tells apart (measured: 0.10 at most after the samples were changed by 1e-14, 0.30 in condition 8
-    // after the eigenvectors of the start came from another Schur form).
-    let recommended = &bundle[0];
+    // is within 1 / sqrt 2 of a standard deviation. So is the same order again: the dataset's models were polished for five steps, and
+    // the polish now goes on while it gains (measured: 0.65 in condition 5).
     let is_same = found.refined.name == recommended.name;
-    let limit = if is_same { 0.4 } else { std::f64::consts::FRAC_1_SQRT_2 };
+    let limit = std::f64::consts::FRAC_1_SQRT_2;
     let deviation = deviation(&found.refined, recommended);
     assert!(deviation <= limit, "{} of {}: {deviation} standard deviations", found.refined.name, recommended.name);
     let unrefined =

@@ -44,7 +44,9 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     let expected = &known["expected"];
     // Independent numpy code; the tolerances stand in its file.
     assert_eq!(space(&found.refined).order() as f64, expected["order"].as_f64().unwrap());
-    for (order, value) in &found.criteria {
+    let known_orders = found.criteria.iter().filter(|(order, _)| expected["bic"][order.to_string()].is_number());
+    assert!(known_orders.clone().count() >= 3, "{:?}", found.criteria);
+    for (order, value) in known_orders {
         let expected = expected["bic"][order.to_string()].as_f64().unwrap();
         // The first line of a record does not count any more (M14.12), which those figures still have.
         assert!((value / expected - 1.0).abs() < 0.03, "BIC of order {order}: {value}, not {expected}");

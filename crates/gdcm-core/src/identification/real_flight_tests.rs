@@ -177,7 +177,8 @@ fn a_model_of_too_low_an_order_leaves_its_points() {
         let data = PreparedData::new(std::slice::from_ref(&record), &options, &Sequential, &progress).unwrap();
         let proposal = propose(&data, &options, &progress).unwrap();
         let refinement = refine(&data, &proposal, &progress).unwrap();
-        departure(&refinement.fit.model, &data.measured, options.band, (0, 0))
+        let model = model_at_points(&refinement.fit.model, &data, &options);
+        departure(&model, &data.measured, options.band, (0, 0))
     };
     let (good, left) = with_orders(None);
     assert!(good < number(&file["points"]["T_max_chosen_order"]) && left.is_none(), "{good}");

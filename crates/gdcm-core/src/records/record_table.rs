@@ -37,7 +37,7 @@ impl RecordColumn {
         Self { name: name.into(), unit: None, side: None, values, topic: None, meaning: None }
     }
 
-    /// Its name within its topic: "xyz[0]" of "vehicle_angular_velocity.xyz[0]".
+    /// Its name within its topic: `xyz[0]` of `vehicle_angular_velocity.xyz[0]`.
     pub fn field(&self) -> &str {
         let topic = self.topic.as_ref().map_or("", |topic| topic.name.as_str());
         self.name.strip_prefix(topic).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&self.name)

@@ -55,6 +55,8 @@ pub(super) enum DialogPurpose {
 pub(super) enum PendingAction {
     /// To show what was read, which is good.
     Show(ReadFor, Box<Opened>),
+    /// To go back to the start page with nothing of what is open.
+    Close,
     /// To close the window.
     Quit,
 }
@@ -72,6 +74,7 @@ impl GdcmApp {
         state.unsaved = differences.iter().any(|difference| matches!(difference, Difference::NotApplied { .. }));
         state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
         state.differences = differences;
+        state.is_example = loaded.path().is_none();
         let saved = SavedStudy { path, study: (!state.unsaved).then_some(study) };
         (state, loaded, saved)
     }
@@ -156,6 +159,19 @@ impl GdcmApp {
         self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
     }
 
+    /// Puts the example in the place of what is open, behind the start page.
+    pub(super) fn close_study(&mut self) {
+        match embedded_example() {
+            Ok(example) => {
+                self.show(Opened::Dataset(example));
+                self.state.on_start_page = true;
+                self.state.notice = None;
+                self.read_recent(None);
+            }
+            Err(error) => self.notify_error(error.to_string()),
+        }
+    }
+
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
         match opened {
             Ok(opened) if purpose != ReadFor::Reloading && self.state.unsaved => {
@@ -196,6 +212,7 @@ impl GdcmApp {
         self.goes_on_once_saved = false;
         match self.postponed.take() {
             Some(PendingAction::Show(purpose, opened)) => self.show_read(purpose, *opened),
+            Some(PendingAction::Close) => self.close_study(),
             Some(PendingAction::Quit) => self.quit(),
             None => {}
         }

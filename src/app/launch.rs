@@ -11,11 +11,12 @@ use eframe::{App, NativeOptions};
 use egui::ViewportBuilder;
 
 use crate::executor::{Pool, start_threads};
-use crate::view::Preferences;
 use crate::view::assembling::AssemblingCommand;
+use crate::view::start_page::OpensWith;
+use crate::view::{Command, Preferences};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Engine, LIVE_PROOF};
-use gdcm_files::{FileError, Opened, embedded_example, holds_models, load_any};
+use gdcm_files::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
 
 use super::threads::{self, Fault, caught};
 use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
@@ -135,10 +136,15 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
     // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
     let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
     let opening = Arc::clone(opening);
+    let is_unasked = models.is_none() && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
         let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
         let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
+        let last = last_opened(&setup).filter(|_| is_unasked);
         let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
+        if let Some(path) = last {
+            app.dispatch(Command::Open(path));
+        }
         if let Some(models) = models {
             app.dispatch(AssemblingCommand::Add(vec![models]).into());
         }
@@ -146,6 +152,12 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
         Ok(Box::new(app))
     };
     eframe::run_native(APP_ID, options, Box::new(build))
+}
+
+/// What was open last, where the engineer wants to begin with that and it is there.
+fn last_opened(setup: &Setup) -> Option<PathBuf> {
+    let directory = setup.directory.as_deref().filter(|_| setup.preferences.opens_with == OpensWith::LastStudy)?;
+    recent_files(directory).into_iter().find(|path| file_exists(path))
 }
 
 /// Zoom factors with which a window can be used.

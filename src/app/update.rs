@@ -75,8 +75,21 @@ impl GdcmApp {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
             Command::ShowView(view) => display.arrangement.show(view),
-            Command::SplitView(view, direction) => display.arrangement.split_off(view, direction),
-            Command::Arrange(preset) => display.arrangement = Arrangement::of(preset),
+            Command::ShowGroup(group) => display.arrangement.show_group(group),
+            Command::ShowBeside(view) => display.arrangement.show_beside(view),
+            Command::ShowInDock(view) => display.arrangement.dock_view(view),
+            Command::OpenDock(is_open) => display.arrangement.open_dock(is_open),
+            Command::ResetLayout => {
+                display.arrangement = Arrangement::default();
+                display.left_open = None;
+                self.ctx.memory_mut(|memory| memory.reset_areas());
+            }
+            Command::ShowLeft(is_open) => display.left_open = Some(is_open),
+            Command::ShowSheet(sheet) => display.sheet = sheet,
+            Command::ShowSettings(is_open) => display.settings_open = is_open,
+            Command::ShowAdvanced(is_open) => display.advanced_open = is_open,
+            Command::ShowIdentified(is_open) => display.identified_open = is_open,
+            Command::MapCost(mapped) => display.mapped_cost = mapped,
             Command::ShowNetGains(pairs) => display.net_gain_pairs = pairs,
             Command::PickPair(pair) => {
                 display.net_gain_pairs = PairSet::Picked;
@@ -126,7 +139,11 @@ impl GdcmApp {
             Command::SaveFigure(view, width, path) => self.save_figure(view, width, path),
             Command::AskReport => self.ask_report(),
             Command::WriteReport(path) => self.write_report(path),
-            Command::FocusField(name) => self.focus_next(NextFocus::Field(name)),
+            Command::FocusField(name) => {
+                // A field that is folded away has to be there before it can have the focus.
+                (display.settings_open, display.advanced_open) = (true, true);
+                self.focus_next(NextFocus::Field(name));
+            }
             Command::LeaveRegion { forward } => self.focus_next(NextFocus::Region { forward }),
             Command::StartTour => self.state.tour = Some(0),
             Command::ShowTourStep(step) => self.state.tour = step,
@@ -148,6 +165,10 @@ impl GdcmApp {
             Command::Open(path) => self.open(path, None),
             Command::OpenStudyOf(study, dataset) => self.open(study, Some(dataset)),
             Command::OpenExample => self.open_example(),
+            Command::CloseStudy if self.state.unsaved => self.ask_to_lose(PendingAction::Close),
+            Command::CloseStudy => self.close_study(),
+            Command::ShowStart(is_shown) => self.state.on_start_page = is_shown,
+            Command::BeginWith(what) => display.opens_with = what,
             Command::RestoreRecovery(offer) => self.restore(offer),
             Command::DiscardRecovery(offer) => self.discard(offer),
             Command::Reload => self.reload(),

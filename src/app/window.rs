@@ -4,18 +4,18 @@ use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, OnceLock};
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, ScrollArea, Ui, ViewportCommand, Visuals};
+use egui::{CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand, Visuals};
 
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::palette::{self, Palette};
 use crate::view::records::RecordsCommand;
-use crate::view::{Bar, Command, Need, Preferences, State, View};
+use crate::view::start_page::OpensWith;
+use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, sheet_ui};
 use crate::view::{
-    bars, centre, conditions_panel, explanation, focus, forms, help, matrix_panel, models_panel, result_panel,
-    settings_panel,
+    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, reasons, start_page,
 };
 use gdcm_core::correction::{ProblemError, Solution};
-use gdcm_core::dataset::ConditionId;
+use gdcm_core::dataset::{BundleKind, ConditionId};
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 
@@ -121,6 +121,7 @@ impl GdcmApp {
             title: String::new(),
             requested: None,
         };
+        app.state.on_start_page = app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
         app.offer_tour(setup.offers_tour);
         app.look_for_recent();
         Ok(app)
@@ -277,27 +278,86 @@ impl GdcmApp {
     }
 
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
-        let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(10, 4));
+        let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 0));
         let state = &mut self.state;
-        Panel::top("menu bar").frame(bar).show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
+        state.display.is_wide = ui.ctx().content_rect().width() >= WIDE;
+        let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
+        top.show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
-            Panel::top("bars").frame(bar).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
+            let frame = bar.inner_margin(Margin::symmetric(12, 4));
+            Panel::top("bars").frame(frame).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
-        Panel::bottom("status bar").frame(bar).show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
+        let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
+        status.show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
         if let Some(bench) = &mut state.assembling {
             return assembling_ui(ui, bench, palette, commands);
         }
-        let side = Frame::new().fill(palette.panel).inner_margin(Margin { left: 10, right: 4, top: 4, bottom: 4 });
-        let width = ui.available_width();
-        // The sides give way before the plots do, but have room for error bars from the start: nothing moves when these come.
-        let (left, right) = ((0.19 * width).clamp(215.0, 330.0), (0.27 * width).clamp(366.0, 430.0));
-        let panel = Panel::left("conditions and models").frame(side).default_size(left).size_range(190.0..=460.0);
-        panel.show(ui, |ui| left_ui(ui, state, palette, commands));
-        let panel = Panel::right("constraints and result").frame(side).default_size(right).size_range(250.0..=620.0);
-        panel.show(ui, |ui| right_ui(ui, state, palette, commands));
-        // On the ground that the whole window is cleared with.
-        let middle = Frame::new().inner_margin(Margin::symmetric(8, 4));
+        if state.on_start_page {
+            CentralPanel::default().frame(Frame::new()).show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
+            return;
+        }
+        let is_wide = state.display.is_wide;
+        left_ui(ui, state, palette, commands);
+        // The name of a panel says for which windows its width was dragged.
+        let (name, width) = if is_wide { ("answer", 352.0) } else { ("answer beside the rail", 320.0) };
+        let side = Frame::new().fill(palette.panel);
+        let panel = Panel::right(name).frame(side).default_size(width).size_range(300.0..=520.0);
+        panel.show(ui, |ui| steady_ui(ui, |ui| answer_panel::answer_ui(ui, state, palette, commands)));
+        let middle = Frame::new();
+        let centre = ui.available_rect_before_wrap();
         CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
+        sheets_ui(ui, centre, state, palette, commands);
+    }
+}
+
+/// A window of this width has room for names and for the left panel in full \[pt\].
+const WIDE: f32 = 1400.0;
+
+/// Conditions and models, in full or as a rail.
+fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let side = Frame::new().fill(palette.panel);
+    if !state.display.left_open.unwrap_or(state.display.is_wide) {
+        let frame = side.inner_margin(Margin { left: 4, right: 2, top: 2, bottom: 4 });
+        let panel = Panel::left("rail").frame(frame).exact_size(104.0);
+        panel.show(ui, |ui| scrolled(ui, "rail", |ui| conditions_panel::rail_ui(ui, state, palette, commands)));
+        return;
+    }
+    let panel = Panel::left("conditions and models").frame(side).default_size(272.0).size_range(240.0..=420.0);
+    panel.show(ui, |ui| {
+        steady_ui(ui, |ui| {
+            let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 4, bottom: 0 });
+            frame.show(ui, |ui| {
+                ui.spacing_mut().item_spacing.y = 0.0;
+                let most = 0.45 * ui.available_height();
+                ScrollArea::vertical().id_salt("conditions").max_height(most).auto_shrink([false, true]).show(ui, |ui| {
+                    conditions_panel::conditions_ui(ui, state, palette, commands);
+                });
+                ui.separator();
+                models_panel::models_ui(ui, state, palette, commands);
+            });
+        });
+    });
+}
+
+/// Content that takes the room it is given and asks for no more: a panel is as wide as it was dragged, whatever its content is.
+fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let room = ui.available_rect_before_wrap();
+    let mut content = ui.new_child(UiBuilder::new().max_rect(room).layout(*ui.layout()));
+    content.set_clip_rect(room.intersect(ui.clip_rect()));
+    add(&mut content);
+    ui.advance_cursor_after_rect(room);
+}
+
+/// What lies over the middle of the window.
+fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(sheet) = state.display.sheet else { return };
+    let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
+        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
+        Sheet::Models => models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands),
+        Sheet::Identified => models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands),
+    });
+    if is_closed {
+        commands.push(Command::ShowSheet(None));
     }
 }
 
@@ -314,31 +374,11 @@ fn asks_the_same(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }
 
-fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    scrolled(ui, "left", |ui| {
-        conditions_panel::conditions_ui(ui, state, palette, commands);
-        models_panel::physics_models_ui(ui, state, palette, commands);
-        models_panel::identified_models_ui(ui, state, palette, commands);
-    });
-}
-
-fn right_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let foot = Frame::new().inner_margin(Margin { top: 6, bottom: 4, ..Margin::ZERO });
-    Panel::bottom("export").frame(foot).show(ui, |ui| result_panel::export_button_ui(ui, state, palette, commands));
-    scrolled(ui, "right", |ui| {
-        matrix_panel::matrix_ui(ui, state, palette, commands);
-        settings_panel::settings_ui(ui, state, palette, commands);
-        result_panel::result_ui(ui, state, palette, commands);
-    });
-}
-
-/// A column that scrolls where it is too long; its content keeps clear of the scroll bar.
+/// A column that scrolls where it is too long.
 fn scrolled(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
-        Frame::new().inner_margin(Margin { right: 8, ..Margin::ZERO }).show(ui, |ui| {
-            ui.set_width(ui.available_width());
-            add(ui);
-        });
+        ui.set_width(ui.available_width());
+        add(ui);
     });
 }
 

@@ -1,172 +1,189 @@
-//! How the views share the middle of the window.
+//! Which views the middle of the window shows, and where: one at a time in groups, another one beside it, and the dock below.
 
-use egui::Id;
-use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
 pub use super::views::{Need, View, ViewKind, ViewTitle};
 
-/// Ready arrangements of the views.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Preset {
-    /// The plots of one condition above, what changes with airspeed below.
-    Stacked,
-    /// The same two groups side by side.
-    SideBySide,
-    /// One group of tabs.
-    Single,
+/// What the views are about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum ViewGroup {
+    /// Responses over frequency.
+    #[default]
+    Response,
+    /// Models, and what they are identified from.
+    Models,
+    /// What changes with airspeed.
+    Schedule,
+    /// What the correction is worth.
+    Judge,
 }
 
-impl Preset {
-    /// Every preset, in the order of the menu.
-    pub const ALL: [Self; 3] = [Self::Stacked, Self::SideBySide, Self::Single];
+impl ViewGroup {
+    /// Every group, from left to right.
+    pub const ALL: [Self; 4] = [Self::Response, Self::Models, Self::Schedule, Self::Judge];
 
-    /// What its menu entry says.
+    /// What its button says.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Stacked => "Plots above one another",
-            Self::SideBySide => "Plots side by side",
-            Self::Single => "One plot at a time",
+            Self::Response => "Response",
+            Self::Models => "Models",
+            Self::Schedule => "Schedule",
+            Self::Judge => "Judge",
         }
+    }
+
+    /// Its views, from left to right.
+    pub fn views(self) -> impl Iterator<Item = View> {
+        View::ALL.into_iter().filter(move |view| view.kind().group == self)
     }
 }
 
-/// How the views share the middle of the window: tabs that can be dragged, split and resized.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What the middle of the window shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Arrangement {
-    /// The tiles.
-    pub(super) tree: Tree<View>,
+    /// The group in front.
+    group: ViewGroup,
+    /// The view that each group shows, in the order of the groups.
+    of_groups: [View; 4],
+    /// The view beside it, where there is one.
+    beside: Option<View>,
+    /// The view in the dock.
+    dock: View,
+    /// Whether the dock is unfolded; by the height of the window where that was not chosen.
+    dock_open: Option<bool>,
 }
 
 impl Default for Arrangement {
     fn default() -> Self {
-        Self::of(Preset::Stacked)
+        let of_groups = [View::Bode, View::Poles, View::Channels, View::Assessment];
+        Self { group: ViewGroup::Response, of_groups, beside: None, dock: View::NetGain, dock_open: None }
     }
 }
 
-/// Part of the room that the first group gets.
-const UPPER_PART: f32 = 0.66;
-
 impl Arrangement {
-    /// A ready arrangement.
-    pub fn of(preset: Preset) -> Self {
-        let mut tiles = Tiles::default();
-        let (upper, lower): (Vec<View>, Vec<View>) = View::ALL.into_iter().partition(|view| !view.kind().is_lower);
-        let root = match preset {
-            Preset::Single => tabs(&mut tiles, upper.into_iter().chain(lower)),
-            Preset::Stacked | Preset::SideBySide => {
-                let groups = [tabs(&mut tiles, upper), tabs(&mut tiles, lower)];
-                let (direction, part) = match preset {
-                    Preset::SideBySide => (LinearDir::Horizontal, 0.5),
-                    _ => (LinearDir::Vertical, UPPER_PART),
-                };
-                tiles.insert_container(Linear::new_binary(direction, groups, part))
-            }
-        };
-        Self { tree: Tree::new(Id::unique("views"), root, tiles) }
+    /// The group in front.
+    pub fn group(&self) -> ViewGroup {
+        self.group
     }
 
-    /// Brings a view to the front of its tabs.
+    /// The view in front.
+    pub fn view(&self) -> View {
+        self.of_groups[self.group as usize]
+    }
+
+    /// The view beside it.
+    pub fn beside(&self) -> Option<View> {
+        self.beside.filter(|beside| *beside != self.view())
+    }
+
+    /// The view that the dock shows; none where the view in front takes its room.
+    pub fn dock(&self) -> Option<View> {
+        let needs_all = |view: View| view.kind().takes_dock || view == self.dock;
+        (!needs_all(self.view()) && !self.beside().is_some_and(|beside| beside == self.dock)).then_some(self.dock)
+    }
+
+    /// Whether the dock is unfolded in a window that has room for it, or has not.
+    pub fn is_dock_open(&self, has_room: bool) -> bool {
+        self.dock_open.unwrap_or(has_room)
+    }
+
+    /// Folds or unfolds the dock.
+    pub fn open_dock(&mut self, is_open: bool) {
+        self.dock_open = Some(is_open);
+    }
+
+    /// Brings a group to the front, with the view that it showed last.
+    pub fn show_group(&mut self, group: ViewGroup) {
+        self.group = group;
+    }
+
+    /// Brings a view to the front; one of the dock is unfolded there, unless it is in front already.
     pub fn show(&mut self, view: View) {
-        self.tree.make_active(|_, tile| matches!(tile, Tile::Pane(pane) if *pane == view));
+        let group = view.kind().group;
+        self.group = group;
+        self.of_groups[group as usize] = view;
+        if self.beside == Some(view) {
+            self.beside = None;
+        }
+    }
+
+    /// Shows a view in the dock.
+    pub fn dock_view(&mut self, view: View) {
+        self.dock = view;
+        self.dock_open = Some(true);
+    }
+
+    /// Shows a view beside the one in front, or none.
+    pub fn show_beside(&mut self, view: Option<View>) {
+        self.beside = view.filter(|view| *view != self.view());
+    }
+
+    /// The view so many places further in the group in front, round about.
+    pub fn neighbour(&self, by: isize) -> View {
+        let views: Vec<View> = self.group.views().collect();
+        let here = views.iter().position(|view| *view == self.view()).unwrap_or(0);
+        views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
     }
 
     /// Whether a view can be seen.
     pub fn is_shown(&self, view: View) -> bool {
-        self.tree.active_tiles().into_iter().any(|tile| self.tree.tiles.get_pane(&tile) == Some(&view))
+        self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// Gives a view a place of its own beside everything else, in the given direction.
-    pub fn split_off(&mut self, view: View, direction: LinearDir) {
-        let (Some(root), Some(tile)) = (self.tree.root(), self.tree.tiles.find_pane(&view)) else { return };
-        let parent = self.tree.tiles.parent_of(tile);
-        let siblings =
-            parent.and_then(|parent| self.tree.tiles.get_container(parent)).map_or(0, Container::num_children);
-        if siblings < 2 {
-            return;
-        }
-        if let Some(Tile::Container(container)) = parent.and_then(|parent| self.tree.tiles.get_mut(parent)) {
-            container.remove_child(tile);
-        }
-        let group = self.tree.tiles.insert_tab_tile(vec![tile]);
-        let whole = self.tree.tiles.insert_container(Linear::new_binary(direction, [root, group], 0.5));
-        self.tree.root = Some(whole);
-    }
-
-    /// This arrangement, kept from another day, where it holds every view once.
+    /// This arrangement, kept from another day, where every group shows a view of its own.
     pub fn if_whole(self) -> Option<Self> {
-        let reachable = reachable(&self.tree)?;
-        let once = |view: &View| reachable.iter().filter(|found| *found == view).count() == 1;
-        (reachable.len() == View::ALL.len() && View::ALL.iter().all(once)).then_some(self)
+        let is_of_group = |group: ViewGroup| self.of_groups[group as usize].kind().group == group;
+        ViewGroup::ALL.into_iter().all(is_of_group).then_some(self)
     }
-}
-
-fn tabs(tiles: &mut Tiles<View>, views: impl IntoIterator<Item = View>) -> TileId {
-    let panes = views.into_iter().map(|view| tiles.insert_pane(view)).collect();
-    tiles.insert_tab_tile(panes)
-}
-
-/// The views below the root; nothing where a tile is missing, or stands below itself.
-fn reachable(tree: &Tree<View>) -> Option<Vec<View>> {
-    let mut views = Vec::new();
-    let mut open = vec![tree.root()?];
-    let mut visited = 0;
-    while let Some(tile) = open.pop() {
-        visited += 1;
-        if visited > tree.tiles.len() {
-            return None;
-        }
-        match tree.tiles.get(tile)? {
-            Tile::Pane(view) => views.push(*view),
-            Tile::Container(container) => open.extend(container.children()),
-        }
-    }
-    Some(views)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn kept(arrangement: &Arrangement) -> Arrangement {
-        let text = serde_json::to_string(arrangement).unwrap();
-        serde_json::from_str(&text).unwrap()
+    #[test]
+    fn every_view_stands_in_one_group_and_every_group_has_views() {
+        let views: Vec<View> = ViewGroup::ALL.into_iter().flat_map(ViewGroup::views).collect();
+        assert_eq!(views.len(), View::ALL.len());
+        assert!(ViewGroup::ALL.into_iter().all(|group| group.views().count() > 1));
     }
 
     #[test]
-    fn every_preset_holds_every_view_once_and_can_be_kept() {
-        for preset in Preset::ALL {
-            let arrangement = Arrangement::of(preset);
-            assert_eq!(kept(&arrangement).if_whole(), Some(arrangement), "{preset:?}");
-        }
-    }
-
-    #[test]
-    fn an_arrangement_that_lacks_a_view_is_not_whole() {
-        let mut tiles = Tiles::default();
-        let root = tabs(&mut tiles, [View::Bode, View::Overview]);
-        let tree = Tree::new(Id::unique("views"), root, tiles);
-        assert_eq!(Arrangement { tree }.if_whole(), None);
-        assert_eq!(Arrangement { tree: Tree::empty(Id::unique("views")) }.if_whole(), None);
-    }
-
-    #[test]
-    fn a_view_that_is_shown_is_in_front() {
+    fn a_group_remembers_its_view() {
         let mut arrangement = Arrangement::default();
-        assert!(arrangement.is_shown(View::Bode) && !arrangement.is_shown(View::Channels));
-        arrangement.show(View::Channels);
-        assert!(!arrangement.is_shown(View::Bode) && arrangement.is_shown(View::Channels));
-        assert!(arrangement.is_shown(View::NetGain), "the other group is as it was");
+        arrangement.show(View::Overview);
+        arrangement.show_group(ViewGroup::Judge);
+        assert_eq!(arrangement.view(), View::Assessment);
+        arrangement.show_group(ViewGroup::Response);
+        assert_eq!(arrangement.view(), View::Overview);
+        assert_eq!((arrangement.neighbour(1), arrangement.neighbour(-1)), (View::Across, View::Error));
     }
 
     #[test]
-    fn a_view_that_is_split_off_stands_beside_the_rest() {
-        let mut arrangement = Arrangement::of(Preset::Single);
-        arrangement.split_off(View::Channels, LinearDir::Horizontal);
-        assert!(arrangement.is_shown(View::Bode) && arrangement.is_shown(View::Channels));
-        assert_eq!(arrangement.clone().if_whole(), Some(arrangement.clone()), "no view is lost");
-        let before = arrangement.clone();
-        arrangement.split_off(View::Channels, LinearDir::Vertical);
-        assert_eq!(arrangement, before, "it stands alone already");
+    fn a_view_is_never_shown_twice() {
+        let mut arrangement = Arrangement::default();
+        assert_eq!(arrangement.dock(), Some(View::NetGain));
+        arrangement.show(View::NetGain);
+        assert_eq!(arrangement.dock(), None);
+        arrangement.show(View::Bode);
+        arrangement.show_beside(Some(View::NetGain));
+        assert_eq!((arrangement.dock(), arrangement.beside()), (None, Some(View::NetGain)));
+        arrangement.show_beside(Some(View::Poles));
+        arrangement.show(View::Poles);
+        assert_eq!(arrangement.beside(), None);
+        arrangement.show(View::Records);
+        assert_eq!(arrangement.dock(), None, "it takes the room of the dock");
+    }
+
+    #[test]
+    fn an_arrangement_is_kept_and_one_that_mixes_the_groups_up_is_not_taken() {
+        let mut arrangement = Arrangement::default();
+        arrangement.show(View::Evidence);
+        arrangement.show_beside(Some(View::Bode));
+        let text = serde_json::to_string(&arrangement).unwrap();
+        assert_eq!(serde_json::from_str::<Arrangement>(&text).unwrap().if_whole(), Some(arrangement));
+        let mixed = Arrangement { of_groups: [View::Poles; 4], ..Arrangement::default() };
+        assert_eq!(mixed.if_whole(), None);
     }
 }

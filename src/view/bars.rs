@@ -1,32 +1,67 @@
 //! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
 
-use egui::{Align, Button, CollapsingHeader, Frame, Label, Layout, Margin, MenuBar, RichText, ThemePreference, Ui};
+use egui::{
+    Align, Button, CollapsingHeader, FontId, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar, Modifiers, Rect,
+    RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, UiBuilder, pos2, vec2,
+};
 
 use gdcm_core::dataset::{BundleKind, Condition};
 use gdcm_core::study::Assessed;
 
 use super::command_table::command_table;
 use super::records::RecordsState;
-use super::{Background, Command, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words, button_ui};
+use super::controls::elided;
+use super::palette::medium;
+use super::{
+    BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words, button_ui,
+    named, painted_text,
+};
 
-/// Menus and the state of the document.
+/// Menus, the last step, the state of the document, and the way to every command.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    MenuBar::new().ui(ui, |ui| {
-        ui.label(RichText::new("gdcm").strong());
-        ui.add_space(4.0);
-        if ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands)).response.clicked() {
-            commands.push(Command::LookForRecent);
-        }
-        ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
-        ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
-        ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
-        ui.separator();
-        history_ui(ui, state, commands);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            theme_ui(ui, commands);
-            title_ui(ui, state, palette);
+    let bar = ui.available_rect_before_wrap();
+    let layout = Layout::left_to_right(Align::Center);
+    let left = ui.scope_builder(UiBuilder::new().max_rect(bar).layout(layout), |ui| {
+        let shown = MenuBar::new().ui(ui, |ui| {
+            ui.label(RichText::new("gdcm").font(medium(BODY_SIZE)));
+            ui.add_space(4.0);
+            if ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands)).response.clicked() {
+                commands.push(Command::LookForRecent);
+            }
+            ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
+            ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
+            ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
+            ui.separator();
+            history_ui(ui, state, commands);
+            ui.cursor().left()
         });
+        shown.inner
     });
+    let rest = bar.with_min_x(left.inner + 8.0);
+    let layout = Layout::right_to_left(Align::Center);
+    let right = ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| {
+        theme_ui(ui, commands);
+        search_ui(ui, palette, commands)
+    });
+    let room = rest.with_max_x(right.inner - 8.0);
+    title_ui(ui, bar, room, state, palette);
+    ui.advance_cursor_after_rect(bar);
+}
+
+/// The field that opens the palette of commands; gives where it begins.
+fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32 {
+    let (rect, response) = ui.allocate_exact_size(vec2(168.0, 24.0), Sense::click());
+    let line = if response.hovered() { palette.dim_text } else { palette.line };
+    ui.painter().rect(rect, 6.0, palette.background, Stroke::new(1.0, line), StrokeKind::Inside);
+    let inner = rect.shrink2(vec2(9.0, 0.0));
+    painted_text(ui, inner, 0.0, "Find a command", FontId::proportional(BODY_SIZE), palette.dim_text);
+    let keys = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
+    let keys = ui.ctx().format_shortcut(&keys);
+    painted_text(ui, inner, -0.01, &keys, FontId::proportional(SMALL_SIZE), palette.dim_text);
+    if named(response, Role::Button, "Find a command").clicked() {
+        commands.push(Command::ShowForm(Some(FormKind::Palette)));
+    }
+    rect.left()
 }
 
 /// The entries of one menu, in groups parted by lines.
@@ -93,21 +128,40 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
+/// The other theme, as a half-filled disc.
 fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    let (text, other, hint) = match ui.visuals().dark_mode {
-        true => ("◐ Light", ThemePreference::Light, "Change to the light theme"),
-        false => ("◐ Dark", ThemePreference::Dark, "Change to the dark theme"),
+    let (name, other) = match ui.visuals().dark_mode {
+        true => ("Change to the light theme", ThemePreference::Light),
+        false => ("Change to the dark theme", ThemePreference::Dark),
     };
-    bar_button_ui(ui, (text.to_owned(), hint), true, Command::SetTheme(other), commands);
+    let button = named(ui.add(Button::new("◐").frame(false)), Role::Button, name);
+    if button.on_hover_text(name).clicked() {
+        commands.push(Command::SetTheme(other));
+    }
 }
 
-fn title_ui(ui: &mut Ui, state: &State, palette: &Palette) {
-    let mark = if state.unsaved { " •" } else { "" };
-    let study = palette.dim(format!("· {}{mark}", state.study_name));
-    let hint = if state.unsaved { "There are decisions that are not saved" } else { "Every decision is saved" };
-    ui.add(Label::new(study).truncate()).on_hover_text(hint);
-    let name = Label::new(state.dataset().name()).truncate();
-    ui.add(name).on_hover_text(state.dataset().description());
+/// Dataset and study, in the middle of the bar where there is room for that.
+fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette) {
+    let strong = medium(BODY_SIZE);
+    let plain = FontId::proportional(BODY_SIZE);
+    let study = format!("{}{}", state.study_name, if state.unsaved { " · edited" } else { "" });
+    let width = |text: &str, font: &FontId| {
+        ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font.clone(), palette.text).size().x)
+    };
+    let of_study = width(&study, &plain);
+    let name = elided(ui, state.dataset().name(), room.width() - of_study - 8.0, BODY_SIZE);
+    let whole = width(&name, &strong) + 8.0 + of_study;
+    let left = (bar.center().x - 0.5 * whole).min(room.right() - whole).max(room.left());
+    if whole > room.width() {
+        return;
+    }
+    let place = Rect::from_min_size(pos2(left, bar.top()), vec2(whole, bar.height()));
+    painted_text(ui, place, 0.0, &name, strong, palette.text);
+    painted_text(ui, place, -0.01, &study, plain, palette.dim_text);
+    let response = ui.interact(place, ui.scope_id().with("document"), Sense::hover());
+    let is_saved = if state.unsaved { "There are decisions that are not saved" } else { "Every decision is saved" };
+    let response = named(response, Role::Label, format!("{}, {study}", state.dataset().name()));
+    response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
 }
 
 /// Something that has happened to the program or to its files.
@@ -211,7 +265,7 @@ fn list_ui(ui: &mut Ui, sentences: &[String]) {
 
 /// State of the computation on the left, message or standing remark on the right.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
             Some(notice) => {
@@ -238,7 +292,10 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         (None, true, _) => ("● computing …".to_owned(), palette.warning),
         (None, false, _) => ("● up to date".to_owned(), palette.good),
     };
-    ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    if state.analysis().is_some() {
+        label.on_hover_text(format!("The newest analysis took {:.1} ms", state.results.elapsed_ms));
+    }
     let is_stopped = state.results.background.stopped;
     let is_told = state.results.is_background_told(now);
     let beside = match is_stopped {
@@ -256,10 +313,6 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let count = |condition: &Condition| BundleKind::BOTH.map(|kind| condition.bundle(kind).len()).iter().sum::<usize>();
     let models: usize = state.dataset().conditions().iter().map(|condition| count(condition)).sum();
     ui.label(palette.small(format!("{models} responses · {} frequencies", state.study.settings.points)));
-    if state.analysis().is_some() {
-        let time = ui.label(palette.small(format!("{:.1} ms", state.results.elapsed_ms)));
-        time.on_hover_text("Time the newest analysis took");
-    }
     if !state.file_cautions.is_empty() {
         let label = ui.label(palette.small_warning(counted(state.file_cautions.len(), "caution")));
         label.on_hover_text(state.file_cautions.join("\n"));

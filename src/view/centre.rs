@@ -1,179 +1,276 @@
-//! The middle of the window: the views in tabs that can be dragged, split and resized.
+//! The middle of the window: groups of views, the view in front with its title, and the dock below.
 
-use egui::{Align, Color32, FontId, Frame, Id, Layout, Margin, Response, RichText, Stroke, Ui, Visuals, WidgetText};
-use egui_tiles::{
-    Behavior, Container, LinearDir, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles, Tree, UiResponse,
+use egui::containers::menu::MenuButton;
+use egui::{Align, Button, FontId, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+
+use super::answer_panel::chevron;
+use super::palette::{TITLE_SIZE, medium};
+use super::start_page::example_line_ui;
+use super::{
+    BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui,
+    named, named_switch, region_ui,
 };
 
-use super::{BODY_SIZE, Command, Palette, Region, State, View, ViewTitle, entries_ui, figure_button_ui, region_ui};
-
-/// Height of a row of tabs \[pt\].
-const TAB_HEIGHT: f32 = 26.0;
-/// Space left and right of the name on a tab \[pt\].
-const TAB_MARGIN: f32 = 9.0;
-/// Space that the row of tabs needs besides the tabs, so that it does not scroll \[pt\].
-const TAB_SLACK: f32 = 28.0;
-/// A title is not narrower \[pt\].
-const LEAST_TITLE: f32 = 60.0;
-/// Least size of a view \[pt\].
-const LEAST_VIEW: f32 = 150.0;
+/// Height of the bar of the views \[pt\].
+const BAR: f32 = 40.0;
+/// Height of a title \[pt\].
+const TITLE: f32 = 28.0;
+/// Height of the dock where it is folded \[pt\].
+const FOLDED: f32 = 34.0;
+/// A window of this height unfolds the dock \[pt\].
+const LEAST_WITH_DOCK: f32 = 680.0;
+/// Part of the height that the dock takes.
+const DOCK_PART: f32 = 0.275;
+/// Space left and right of everything \[pt\].
+const PADDING: i8 = 16;
 
 /// Everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let mut tree = std::mem::replace(&mut state.display.arrangement.tree, Tree::empty(Id::unique("views")));
-    tree.ui(&mut Views { state, palette, commands, below: Vec::new() }, ui);
-    state.display.arrangement.tree = tree;
-}
-
-/// What the tiles show.
-struct Views<'a> {
-    state: &'a mut State,
-    palette: &'a Palette,
-    commands: &'a mut Vec<Command>,
-    /// Views whose header has no room beside the tabs: it stands below them.
-    below: Vec<View>,
-}
-
-impl Views<'_> {
-    fn header_ui(&mut self, ui: &mut Ui, view: View) {
-        let (state, palette, kind) = (&*self.state, self.palette, view.kind());
-        if kind.figure.is_some() && kind.tools_width > 0.0 {
-            figure_button_ui(ui, view, self.commands);
-        }
-        (kind.tools)(ui, state, palette, self.commands);
-        title_ui(ui, state, kind.title, palette);
-        if kind.is_of_all_conditions {
-            older_ui(ui, state, palette);
-        }
+    view_bar_ui(ui, state, palette, commands);
+    if state.is_example {
+        let frame = Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 4, bottom: 0 });
+        frame.show(ui, |ui| example_line_ui(ui, palette, commands));
     }
-}
-
-/// Which response and which condition a view shows.
-fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
-    let condition = state.condition();
-    let of_condition = format!("condition {} · {}", condition.id(), condition.flight_state().name);
-    let title = match title {
-        ViewTitle::Response => format!("{} · {of_condition}", state.dataset().pair_name(state.display.pair)),
-        ViewTitle::Condition => of_condition,
-        ViewTitle::None => return,
+    if let Some(dock) = state.display.arrangement.dock() {
+        dock_ui(ui, state, dock, palette, commands);
+    }
+    let (view, beside) = (state.display.arrangement.view(), state.display.arrangement.beside());
+    let area = ui.available_rect_before_wrap();
+    let Some(beside) = beside else {
+        return part_ui(ui, area, state, view, palette, commands);
     };
-    // A title of a few letters says nothing.
-    if ui.available_width() > LEAST_TITLE {
-        let text = palette.small(&title);
-        ui.add(egui::Label::new(text).truncate());
+    let middle = area.center().x;
+    part_ui(ui, area.with_max_x(middle), state, view, palette, commands);
+    ui.painter().vline(middle, area.y_range(), Stroke::new(1.0, palette.line));
+    part_ui(ui, area.with_min_x(middle), state, beside, palette, commands);
+}
+
+/// Groups at the left, the views of the one in front beside them, and what can be done with the view at the right.
+fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let bar = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), BAR));
+    ui.allocate_rect(bar, Sense::hover());
+    ui.painter().rect_filled(bar, 0.0, palette.panel);
+    ui.painter().hline(bar.x_range(), bar.bottom(), Stroke::new(1.0, palette.line));
+    let inner = bar.shrink2(vec2(f32::from(PADDING), 0.0));
+    let left = ui.scope_builder(UiBuilder::new().max_rect(inner).layout(Layout::left_to_right(Align::Center)), |ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        groups_ui(ui, state, palette, commands);
+        ui.add_space(12.0);
+        for view in state.display.arrangement.group().views() {
+            tab_ui(ui, bar, view, state.display.arrangement.view() == view, palette, commands);
+        }
+    });
+    let rest = inner.with_min_x(left.response.rect.right() + 8.0);
+    ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::right_to_left(Align::Center)), |ui| {
+        let view = state.display.arrangement.view();
+        figure_button_ui(ui, view, commands);
+        let fit = named(ui.add(Button::new("Fit").frame(false)), Role::Button, "Fit");
+        if fit.on_hover_text("Bring every curve into view (F, or double click)").clicked() {
+            commands.push(Command::FitPlots);
+        }
+        beside_ui(ui, state, palette, commands);
+    });
+}
+
+/// One button of several joined ones for each group.
+fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let font = medium(BODY_SIZE);
+    let width = |ui: &Ui, name: &str| {
+        ui.fonts_mut(|fonts| fonts.layout_no_wrap(name.to_owned(), font.clone(), palette.text).size().x) + 24.0
+    };
+    let widths = ViewGroup::ALL.map(|group| width(ui, group.name()));
+    let (area, _) = ui.allocate_exact_size(vec2(widths.iter().sum::<f32>() + 4.0, 30.0), Sense::hover());
+    ui.painter().rect(area, 6.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    let mut left = area.left() + 2.0;
+    for (group, width) in ViewGroup::ALL.into_iter().zip(widths) {
+        let place = Rect::from_min_size(pos2(left, area.top() + 2.0), vec2(width, 26.0));
+        left = place.right();
+        let is_front = state.display.arrangement.group() == group;
+        let response = ui.interact(place, ui.scope_id().with(("group", group.name())), Sense::click());
+        if is_front || response.hovered() {
+            ui.painter().rect_filled(place, 5.0, palette.raised);
+        }
+        let color = if is_front { palette.text } else { palette.dim_text };
+        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, group.name(), font.clone(), color);
+        let response = named_switch(response, Role::Button, is_front, format!("Views: {}", group.name()));
+        let names: Vec<&str> = group.views().map(View::name).collect();
+        if response.on_hover_text(names.join(", ")).clicked() {
+            commands.push(Command::ShowGroup(group));
+        }
     }
 }
 
-/// Says that what stands beside is of older settings than the result of the condition shown.
-fn older_ui(ui: &mut Ui, state: &State, palette: &Palette) {
-    if state.others_are_older() {
+/// The name of a view, with a line of accent below the one in front.
+fn tab_ui(ui: &mut Ui, bar: Rect, view: View, is_front: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let font = if is_front { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
+    let color = if is_front { palette.text } else { palette.dim_text };
+    let galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), font, color));
+    let (place, response) = ui.allocate_exact_size(vec2(galley.size().x + 14.0, BAR), Sense::click());
+    ui.painter().galley(place.center() - 0.5 * galley.size(), galley, color);
+    if is_front || response.hovered() {
+        let line = Rect::from_x_y_ranges(place.shrink2(vec2(4.0, 0.0)).x_range(), bar.bottom() - 2.0..=bar.bottom());
+        ui.painter().rect_filled(line, 1.0, if is_front { palette.accent } else { palette.line });
+    }
+    let response = named_switch(response, Role::Tab, is_front, view.name());
+    if response.on_hover_text(view.kind().purpose).clicked() {
+        commands.push(Command::ShowView(view));
+    }
+}
+
+/// The button that shows a second view beside the one in front, or puts it away.
+fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let arrangement = &state.display.arrangement;
+    let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
+        let views = View::ALL.into_iter().filter(|view| *view != arrangement.view());
+        entries_ui(ui, views.map(|view| (format!("{} beside it", view.name()), Command::ShowBeside(Some(view)))), commands);
+        if arrangement.beside().is_some() {
+            ui.separator();
+            entries_ui(ui, [("One view alone", Command::ShowBeside(None))], commands);
+        }
+    });
+    let symbol = Rect::from_center_size(button.rect.center(), vec2(14.0, 12.0));
+    let color = if arrangement.beside().is_some() { palette.accent } else { palette.dim_text };
+    ui.painter().rect_stroke(symbol, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
+    ui.painter().vline(symbol.center().x, symbol.y_range(), Stroke::new(1.3, color));
+    named(button, Role::Button, "Show another view beside").on_hover_text("Another view beside this one");
+}
+
+/// A view with its title and its tools in an area.
+fn part_ui(ui: &mut Ui, area: Rect, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+    let margin = Margin { left: PADDING, right: PADDING, top: 6, bottom: 4 };
+    ui.scope_builder(UiBuilder::new().id_salt(("view", view)).max_rect(area), |ui| {
+        ui.set_clip_rect(area.intersect(ui.clip_rect()));
+        Frame::new().inner_margin(margin).show(ui, |ui| {
+            title_row_ui(ui, state, view, palette, commands);
+            let draw = view.kind().draw;
+            region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
+        });
+    });
+    ui.advance_cursor_after_rect(area);
+}
+
+/// What the view shows at the left, its tools at the right; these stand in a line of their own where there is no room beside.
+fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+    /// A title is not narrower \[pt\].
+    const LEAST: f32 = 200.0;
+    let kind = view.kind();
+    let width = ui.available_width();
+    let is_titled = kind.title != ViewTitle::None;
+    if is_titled && width - kind.tools_width < LEAST && kind.tools_width > 0.0 {
+        row_ui(ui, width, |ui| title_ui(ui, state, kind.title, palette));
+        row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
+    } else if is_titled || kind.tools_width > 0.0 {
+        row_ui(ui, width, |ui| {
+            tools_ui(ui, state, view, palette, commands);
+            let rest = ui.available_rect_before_wrap();
+            let layout = Layout::left_to_right(Align::Center);
+            ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| title_ui(ui, state, kind.title, palette));
+        });
+    }
+}
+
+fn row_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+    ui.allocate_ui_with_layout(vec2(width, TITLE), Layout::right_to_left(Align::Center).with_main_wrap(false), |ui| {
+        ui.set_min_size(vec2(width, TITLE));
+        add(ui);
+    });
+}
+
+fn tools_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+    // That of the view in front stands in the bar.
+    if view != state.display.arrangement.view() {
+        figure_button_ui(ui, view, commands);
+    }
+    (view.kind().tools)(ui, state, palette, commands);
+    if view.kind().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("of older settings");
         ui.label(text).on_hover_text("The condition shown is computed anew already; the others are on their way");
     }
 }
 
-/// Whether a tile is the one shown of its tabs.
-fn is_in_front(tiles: &Tiles<View>, tile: TileId) -> bool {
-    let parent = tiles.parent_of(tile).and_then(|parent| tiles.get(parent));
-    matches!(parent, Some(Tile::Container(Container::Tabs(tabs))) if tabs.active == Some(tile))
+/// "LON → Q  condition 10: 60 kt, low altitude, high weight".
+fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
+    let condition = state.condition();
+    let of_condition = format!("condition {}: {}", condition.id(), condition.flight_state().name);
+    let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
+    match title {
+        ViewTitle::Response => {
+            heading(ui, &state.dataset().pair_name(state.display.pair));
+            ui.add(egui::Label::new(palette.dim(of_condition)).truncate());
+        }
+        ViewTitle::Focus => drop(heading(ui, &state.dataset().pair_name(state.display.pair))),
+        ViewTitle::Condition => {
+            heading(ui, &format!("Condition {}", condition.id()));
+            ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
+        }
+        ViewTitle::None => {}
+    }
 }
 
-impl Behavior<View> for Views<'_> {
-    fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, view: &mut View) -> UiResponse {
-        if self.below.contains(view) && view.kind().tools_width > 0.0 {
-            let layout = Layout::right_to_left(Align::Center).with_main_wrap(true);
-            let size = egui::vec2(ui.available_width(), TAB_HEIGHT);
-            ui.allocate_ui_with_layout(size, layout, |ui| self.header_ui(ui, *view));
-        }
-        let frame = Frame::new().inner_margin(Margin { top: 4, ..Margin::ZERO });
-        let (state, palette) = (&mut *self.state, self.palette);
-        let commands = &mut *self.commands;
-        let draw = view.kind().draw;
-        frame.show(ui, |ui| region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands)));
-        UiResponse::None
-    }
-
-    fn tab_title_for_pane(&mut self, view: &View) -> WidgetText {
-        RichText::new(view.name()).size(BODY_SIZE).into()
-    }
-
-    fn on_tab_button(&mut self, tiles: &mut Tiles<View>, tile: TileId, tab: Response) -> Response {
-        let Some(view) = tiles.get_pane(&tile).copied() else { return tab };
-        if is_in_front(tiles, tile) {
-            let line = tab.rect.with_max_y(tab.rect.top() + 2.0);
-            tab.ctx.layer_painter(tab.layer_id).with_clip_rect(tab.interact_rect).rect_filled(
-                line,
-                0.0,
-                self.palette.accent,
-            );
-        }
-        tab.context_menu(|ui| {
-            let places = [
-                ("Put beside the others", Command::SplitView(view, LinearDir::Horizontal)),
-                ("Put below the others", Command::SplitView(view, LinearDir::Vertical)),
-            ];
-            entries_ui(ui, places, self.commands);
+/// The view below the others, folded to its bar in a low window.
+fn dock_ui(ui: &mut Ui, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+    let window = ui.ctx().content_rect().height();
+    let is_open = state.display.arrangement.is_dock_open(window >= LEAST_WITH_DOCK);
+    let frame = Frame::new().fill(palette.background);
+    let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
+    let panel = if is_open {
+        panel.resizable(true).default_size((DOCK_PART * window).round()).size_range(140.0..=0.6 * window)
+    } else {
+        panel.exact_size(FOLDED)
+    };
+    panel.show(ui, |ui| {
+        let area = ui.available_rect_before_wrap();
+        ui.scope_builder(UiBuilder::new().id_salt("dock content").max_rect(area), |ui| {
+            ui.set_clip_rect(area.intersect(ui.clip_rect()));
+            Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 0, bottom: 2 }).show(ui, |ui| {
+                dock_head_ui(ui, state, (view, is_open), palette, commands);
+                if is_open {
+                    let draw = view.kind().draw;
+                    region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
+                }
+            });
         });
-        tab.on_hover_text(format!("{}. Drag the tab to split the plots; right-click: more", view.kind().purpose))
-    }
+        ui.advance_cursor_after_rect(area);
+    });
+}
 
-    fn top_bar_right_ui(&mut self, tiles: &Tiles<View>, ui: &mut Ui, _tile: TileId, tabs: &Tabs, _scroll: &mut f32) {
-        let names = tabs.children.iter().filter_map(|child| tiles.get_pane(child)).map(|view| view.name());
-        let font = FontId::proportional(BODY_SIZE);
-        let width = |name: &str| {
-            ui.fonts_mut(|fonts| fonts.layout_no_wrap(name.to_owned(), font.clone(), Color32::PLACEHOLDER).size().x)
-        };
-        let of_tabs: f32 = names.map(|name| width(name) + 2.0 * TAB_MARGIN).sum();
-        let active = tabs.active.and_then(|active| tiles.get_pane(&active)).copied();
-        let Some(view) = active else { return };
-        // The tabs come first: what is left is the header's.
-        let room = (ui.available_width() - of_tabs - TAB_SLACK).max(0.0);
-        if room < view.kind().tools_width {
-            self.below.push(view);
-            return;
+/// The name of the view in the dock, which folds it, the other views that it may show, and the tools.
+fn dock_head_ui(
+    ui: &mut Ui,
+    state: &State,
+    (view, is_open): (View, bool),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let width = ui.available_width();
+    ui.allocate_ui_with_layout(vec2(width, FOLDED), Layout::right_to_left(Align::Center), |ui| {
+        ui.set_min_size(vec2(width, FOLDED));
+        if is_open {
+            tools_ui(ui, state, view, palette, commands);
         }
-        let size = egui::vec2(room, ui.available_height());
-        ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
-            ui.set_max_width(room);
-            ui.add_space(4.0);
-            self.header_ui(ui, view);
+        let rest = ui.available_rect_before_wrap();
+        ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::left_to_right(Align::Center)), |ui| {
+            let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
+            chevron(ui, place.center(), is_open, palette);
+            let response = named_switch(response, Role::Button, is_open, "Dock");
+            let hint = if is_open { "Fold the plots below" } else { "Unfold the plots below" };
+            if response.on_hover_text(hint).clicked() {
+                commands.push(Command::OpenDock(!is_open));
+            }
+            let others: Vec<View> = View::docked(state).collect();
+            for docked in &others {
+                let is_front = *docked == view;
+                let text = RichText::new(docked.kind().long_name).font(medium(BODY_SIZE));
+                if others.len() == 1 {
+                    ui.label(text);
+                } else {
+                    let button = ui.add(Button::selectable(is_front, text));
+                    let button = named_switch(button, Role::Tab, is_front, format!("{} in the dock", docked.name()));
+                    if button.clicked() {
+                        commands.push(Command::ShowInDock(*docked));
+                    }
+                }
+            }
         });
-    }
-
-    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
-        TAB_HEIGHT
-    }
-
-    fn gap_width(&self, _style: &egui::Style) -> f32 {
-        4.0
-    }
-
-    fn min_size(&self) -> f32 {
-        LEAST_VIEW
-    }
-
-    fn simplification_options(&self) -> SimplificationOptions {
-        // Every view keeps its tab, alone too: it can be dragged by it.
-        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
-    }
-
-    fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
-        TAB_MARGIN
-    }
-
-    fn tab_bar_color(&self, _visuals: &Visuals) -> Color32 {
-        self.palette.panel
-    }
-
-    fn tab_bg_color(&self, _visuals: &Visuals, _tiles: &Tiles<View>, _tile: TileId, state: &TabState) -> Color32 {
-        if state.active { self.palette.background } else { Color32::TRANSPARENT }
-    }
-
-    fn tab_outline_stroke(&self, _visuals: &Visuals, _tiles: &Tiles<View>, _tile: TileId, _state: &TabState) -> Stroke {
-        Stroke::NONE
-    }
-
-    fn tab_text_color(&self, _visuals: &Visuals, _tiles: &Tiles<View>, _tile: TileId, state: &TabState) -> Color32 {
-        if state.active { self.palette.text } else { self.palette.dim_text }
-    }
+    });
 }

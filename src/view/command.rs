@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::ThemePreference;
-use egui_tiles::LinearDir;
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, Table};
 use gdcm_files::ExportFormat;
@@ -15,7 +14,9 @@ use super::plot::{Across, FrequencyUnit, Measure};
 use super::records::RecordsCommand;
 use super::views::AssessedFigures;
 use super::views::PairSet;
-use super::{Bar, CurveCommand, PlotStyle, Preset, TableKind, View};
+use super::cost_map::MappedCost;
+use super::start_page::OpensWith;
+use super::{Bar, CurveCommand, PlotStyle, Sheet, TableKind, View, ViewGroup};
 
 /// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,10 +41,28 @@ pub enum Command {
     Isolate(ModelId),
     /// Bring a plot to the front.
     ShowView(View),
-    /// Give a plot a place of its own: beside the others, or below them.
-    SplitView(View, LinearDir),
-    /// Arrange the plots.
-    Arrange(Preset),
+    /// Bring a group of views to the front, with the one that it showed last.
+    ShowGroup(ViewGroup),
+    /// Show a view beside the one in front, or that one alone.
+    ShowBeside(Option<View>),
+    /// Show a view in the dock.
+    ShowInDock(View),
+    /// Fold or unfold the dock.
+    OpenDock(bool),
+    /// Every panel and plot goes back to its place.
+    ResetLayout,
+    /// Show the left panel in full, or as a rail.
+    ShowLeft(bool),
+    /// Show a sheet over the middle of the window, or none.
+    ShowSheet(Option<Sheet>),
+    /// Unfold the settings, or fold them.
+    ShowSettings(bool),
+    /// Unfold the settings that are seldom changed, or fold them.
+    ShowAdvanced(bool),
+    /// Unfold the identified models, or fold them.
+    ShowIdentified(bool),
+    /// Map the costs of another correction.
+    MapCost(MappedCost),
     /// Show the net gains of other responses.
     ShowNetGains(PairSet),
     /// Pick a response for the net-gain plots, or let it go.
@@ -82,6 +101,12 @@ pub enum Command {
     OpenStudyOf(PathBuf, PathBuf),
     /// Open the embedded example.
     OpenExample,
+    /// Put away what is open, and show the start page.
+    CloseStudy,
+    /// Show the start page, or what is open behind it.
+    ShowStart(bool),
+    /// Begin with something else the next time.
+    BeginWith(OpensWith),
     /// Save the study where it was saved last.
     SaveStudy,
     /// Choose a file for the study with the desktop's dialog.

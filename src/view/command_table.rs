@@ -9,8 +9,9 @@ use gdcm_files::figure::FigureFormat;
 use super::assembling::AssemblingCommand;
 use super::plot::FrequencyUnit;
 use super::records::RecordsCommand;
+use super::start_page::OpensWith;
 use super::views::PairSet;
-use super::{Command, FormKind, Preset, State, TableKind, View, curve_entries, views_with_figure};
+use super::{Command, FormKind, Sheet, State, TableKind, View, ViewGroup, curve_entries, views_with_figure};
 
 /// A menu of the bar on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -156,9 +157,19 @@ fn file_entries(state: &State) -> Vec<Entry> {
         ),
     ];
     let export = export.map(|entry| entry.enabled(state.analysis().is_some()));
+    let pages = [
+        Entry::new("Close", "Put away what is open, and show the start page", Command::CloseStudy).keys(CTRL, Key::W),
+        Entry::new("Start page", "Three ways in, and what was open of late", Command::ShowStart(true)),
+    ];
+    let begin = |what: OpensWith| {
+        let entry = Entry::new(what.name(), "When the program is started without a file", Command::BeginWith(what));
+        entry.enabled(state.display.opens_with != what)
+    };
     let quit = [Entry::new("Quit", "Close the window", Command::Quit).keys(CTRL, Key::Q)];
     let menu = Menu::File;
-    group(menu, 0, open).chain(group(menu, 1, save)).chain(group(menu, 2, export)).chain(group(menu, 3, quit)).collect()
+    let entries = group(menu, 0, open).chain(group(menu, 1, save)).chain(group(menu, 2, export));
+    let entries = entries.chain(group(menu, 3, pages)).chain(group(menu, 4, OpensWith::ALL.map(begin)));
+    entries.chain(group(menu, 5, quit)).collect()
 }
 
 /// What can be done with the flight records of the condition shown.
@@ -247,7 +258,6 @@ fn view_entries(state: &State) -> Vec<Entry> {
         Entry::new(unit_name, "In every plot over frequency", Command::SetFrequencyUnit(unit)),
     ];
     let show = |view: View| Entry::new(format!("Show {}", view.name()), view.kind().purpose, Command::ShowView(view));
-    let arrange = |preset: Preset| Entry::new(preset.name(), ARRANGED, Command::Arrange(preset));
     let parts =
         [(Modifiers::NONE, "Next part of the window", true), (Modifiers::SHIFT, "Previous part of the window", false)];
     let part =
@@ -259,13 +269,56 @@ fn view_entries(state: &State) -> Vec<Entry> {
     ];
     let theme = |(name, meaning, theme)| Entry::new(name, meaning, Command::SetTheme(theme));
     let menu = Menu::View;
-    let entries = group(menu, 0, plots).chain(group(menu, 1, steps(state))).chain(group(menu, 2, View::ALL.map(show)));
-    let entries = entries.chain(group(menu, 3, Preset::ALL.map(arrange))).chain(group(menu, 4, parts.map(part)));
+    let entries = group(menu, 0, plots).chain(group(menu, 1, steps(state))).chain(View::ALL.map(show));
+    let entries = entries.chain(layout_entries(state)).chain(group(menu, 4, parts.map(part)));
     entries.chain(group(menu, 5, themes.map(theme))).collect()
 }
 
-const ARRANGED: &str = "Every plot goes back to its place in this arrangement";
-const PARTS: &str = "Conditions, models, plots, matrix, settings, result; each remembers what had the focus in it";
+const PARTS: &str = "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers what had the focus in it";
+
+/// Groups of views, their neighbours, panels and folds.
+fn layout_entries(state: &State) -> Vec<Entry> {
+    let arrangement = &state.display.arrangement;
+    let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
+    let groups = ViewGroup::ALL.into_iter().zip(keys).map(|(group, key)| {
+        let command = Command::ShowGroup(group);
+        Entry::new(format!("Views: {}", group.name()), "The group, with the view that it showed last", command)
+            .keys(Modifiers::ALT, key)
+    });
+    let neighbours = [("Next view", Key::ArrowRight, 1), ("Previous view", Key::ArrowLeft, -1)];
+    let neighbours = neighbours.map(|(name, key, by)| {
+        Entry::new(name, "Of the group in front", Command::ShowView(arrangement.neighbour(by))).keys(Modifiers::ALT, key)
+    });
+    let display = &state.display;
+    let is_left_open = display.left_open.unwrap_or(display.is_wide);
+    let is_dock_open = arrangement.is_dock_open(true);
+    let switches = [
+        Entry::new(
+            if is_left_open { "Conditions as a rail" } else { "Conditions and models in full" },
+            "The left side of the window",
+            Command::ShowLeft(!is_left_open),
+        )
+        .keys(CTRL, Key::B),
+        Entry::new(
+            if display.settings_open { "Fold the settings" } else { "Unfold the settings" },
+            "In place of matrix and card",
+            Command::ShowSettings(!display.settings_open),
+        )
+        .keys(CTRL, Key::Comma),
+        Entry::new(
+            if is_dock_open { "Fold the dock" } else { "Unfold the dock" },
+            "The plots below the view in front",
+            Command::OpenDock(!is_dock_open),
+        ),
+        Entry::new(
+            "Why the result is so",
+            "Its cautions, where a lag may come from, the proof",
+            Command::ShowSheet(Some(Sheet::Reasons)),
+        ),
+        Entry::new("Reset the layout", "Every panel and plot goes back to its place", Command::ResetLayout),
+    ];
+    groups.chain(neighbours).chain(switches).map(|entry| entry.within(Menu::View, 3)).collect()
+}
 
 /// To the neighbours of the condition and of the response shown.
 fn steps(state: &State) -> [Entry; 4] {

@@ -1,46 +1,111 @@
-//! The list of flight conditions.
+//! The list of flight conditions with the map of what the correction leaves in each; wide, or as a rail.
 
-use egui::{Color32, Rect, RichText, Sense, Ui, vec2};
+use egui::{Color32, CornerRadius, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use gdcm_core::correction::Unmatched;
-use gdcm_core::dataset::{Condition, ConditionId, FlightState};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState};
+use gdcm_core::fidelity::Cost;
 use gdcm_core::study::Edit;
+use gdcm_files::figure::{Classes, decimals};
 
+use super::cost_map::{CostColumn, MappedCost, columns, worst_of};
+use super::palette::{HEAT_COSTS, medium};
 use super::{
-    BODY_SIZE, Command, Palette, Region, Room, SMALL_SIZE, State, TableKind, entries_ui, region_ui, row_text,
-    row_text_within, row_ui, table_heading_ui,
+    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui, named, painted_text,
+    region_ui, row_of_height_ui, table_heading_ui, table_menu_ui,
 };
 
-/// Every condition with speed, altitude, weight and its marks; a click shows it.
+/// Where the number ends, the middle of the mark, and where the airspeed ends \[pt from the row's left edge\].
+const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
+/// Where the map begins, and how far its columns are apart at most \[pt\].
+const MAP: [f32; 2] = [88.0, 26.0];
+/// Size of half a cell of the map \[pt\].
+const HALF_CELL: [f32; 2] = [10.0, 12.0];
+/// Height of a row of the list, and of the rail \[pt\].
+const ROWS: [f32; 2] = [20.0, 24.0];
+
+/// Every condition with its airspeed and what the correction leaves of its held responses; a click shows it.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    region_ui(ui, Region::Conditions, |ui| list_ui(ui, state, palette, commands));
+    region_ui(ui, Region::Conditions, |ui| {
+        let older = if state.others_are_older() { " · of older settings" } else { "" };
+        let count = format!("{}{older}", state.dataset().conditions().len());
+        table_heading_ui(ui, palette, ("Conditions", &count), TableKind::Conditions, commands);
+        let map = Map::of(state, ui.available_width());
+        map.heads_ui(ui, palette, commands);
+        for condition in state.dataset().conditions() {
+            map.row_ui(ui, condition, palette, commands);
+        }
+        map.key_ui(ui, palette);
+    });
 }
 
-fn list_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let conditions = state.dataset().conditions();
-    let older = if state.others_are_older() { " · marks of older settings" } else { "" };
-    let count = format!("{}{older}", conditions.len());
-    table_heading_ui(ui, palette, ("Conditions", &count), TableKind::Conditions, commands);
-    column_headings_ui(ui, palette);
-    for condition in conditions {
-        let id = condition.id();
-        let selected = id == state.condition().id();
-        let marks = Marks::of(state, id);
-        let name = format!("Condition {id}: {}{}", in_words(condition.flight_state()), marks.after_name());
-        let (row, response) = row_ui(ui, palette, selected, false, &name);
-        let marked_from = marks.paint(ui, row, palette);
-        paint_flight_state(
-            ui,
-            row,
-            marked_from,
-            condition,
-            if marks.left_out { palette.dim_text } else { palette.text },
-        );
-        if response.clicked() {
-            commands.push(Command::SelectCondition(id));
+/// The same in a narrow strip: number, airspeed, the worst of the held responses; models and identified models as buttons.
+pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    pin_ui(ui, palette, commands);
+    region_ui(ui, Region::Conditions, |ui| {
+        let (head, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
+        for (right, words) in [(20.0, "no."), (50.0, "kt"), (64.0, "J")] {
+            let upto = head.with_max_x(head.left() + right);
+            painted_text(ui, upto, -0.01, words, FontId::proportional(SMALL_SIZE), palette.dim_text);
         }
-        response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
-        response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks));
+        table_menu_ui(ui, &heading, TableKind::Conditions, commands);
+        let map = Map::rail(state);
+        for condition in state.dataset().conditions() {
+            map.row_ui(ui, condition, palette, commands);
+        }
+    });
+    ui.add_space(12.0);
+    region_ui(ui, Region::Models, |ui| {
+        let rejected = |kind| state.study.choice(state.condition().id()).bundle(kind).rejected.len();
+        let open = state.shown().map_or(0, |shown| state.open_suggestions(shown).len());
+        let sheets = [
+            (BundleKind::Physics, "Models", Sheet::Models, open),
+            (BundleKind::Identified, "Identified", Sheet::Identified, 0),
+        ];
+        for (kind, name, sheet, open) in sheets {
+            let count = state.condition().bundle(kind).len();
+            let kept = format!("{} of {count}", count - rejected(kind));
+            bundle_button_ui(ui, (name, &kept, open), sheet, palette, commands);
+        }
+    });
+}
+
+/// The symbol that pins the panel in place of the rail.
+fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::click());
+    let box_of = Rect::from_center_size(rect.center(), vec2(14.0, 12.0));
+    let color = if response.hovered() { palette.text } else { palette.dim_text };
+    ui.painter().rect_stroke(box_of, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
+    ui.painter().vline(box_of.left() + 5.0, box_of.y_range(), Stroke::new(1.3, color));
+    let response = named(response, Role::Button, "Show the left panel");
+    if response.on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)").clicked() {
+        commands.push(Command::ShowLeft(true));
+    }
+}
+
+fn bundle_button_ui(
+    ui: &mut Ui,
+    (name, kept, open): (&str, &str, usize),
+    sheet: Sheet,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let height = if open > 0 { 58.0 } else { 42.0 };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, palette.raised);
+    }
+    let line = |row: usize, size: f32| Rect::from_min_size(rect.min + vec2(4.0, 4.0 + 17.0 * row as f32), vec2(rect.width(), size));
+    let small = FontId::proportional(SMALL_SIZE);
+    painted_text(ui, line(0, 17.0), 0.0, name, medium(BODY_SIZE), palette.text);
+    painted_text(ui, line(1, 17.0), 0.0, kept, small.clone(), palette.dim_text);
+    if open > 0 {
+        painted_text(ui, line(2, 17.0), 0.0, &format!("{open} suggested"), small, palette.warning);
+    }
+    let response = named(response, Role::Button, format!("Open the list: {name}"));
+    if response.on_hover_text(format!("{name}: {kept} kept")).clicked() {
+        commands.push(Command::ShowSheet(Some(sheet)));
     }
 }
 
@@ -56,37 +121,192 @@ fn in_words(state: &FlightState) -> String {
     words
 }
 
-/// Between a text of one column and the next column \[pt\].
-const COLUMN_GAP: f32 = 4.0;
-const SPEED: Room = Room { left: 30.0, right: 80.0 - COLUMN_GAP };
-const ALTITUDE: Room = Room { left: 80.0, right: 128.0 - COLUMN_GAP };
-const WEIGHT: Room = Room { left: 128.0, right: f32::INFINITY };
+/// The list of one frame: what its columns are, and where they are.
+struct Map<'a> {
+    state: &'a State,
+    classes: Classes,
+    columns: Vec<CostColumn>,
+    pitch: f32,
+    is_rail: bool,
+}
 
-fn column_headings_ui(ui: &mut Ui, palette: &Palette) {
-    let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 15.0), Sense::hover());
-    for (room, text) in [(SPEED, "speed"), (ALTITUDE, "altitude"), (WEIGHT, "weight")] {
-        let room = Room { right: room.right.min(row.width()), ..room };
-        row_text_within(ui, row, room, text, SMALL_SIZE, palette.dim_text);
+impl<'a> Map<'a> {
+    fn of(state: &'a State, width: f32) -> Self {
+        let columns = columns(state);
+        let pitch = ((width - MAP[0] - 16.0) / columns.len().max(1) as f32).min(MAP[1]);
+        Self { state, classes: Classes::of(state.dataset()), columns, pitch, is_rail: false }
+    }
+
+    fn rail(state: &'a State) -> Self {
+        let pairs = state.study.settings.constrained.marked().collect();
+        let columns = vec![CostColumn { head: "J".to_owned(), pairs }];
+        Self { state, classes: Classes::of(state.dataset()), columns, pitch: MAP[1], is_rail: true }
+    }
+
+    fn heads_ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+        let (row, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::CLICK);
+        let small = FontId::proportional(SMALL_SIZE);
+        for (end, words) in [(PLACES[0], "no."), (PLACES[2], "kt")] {
+            painted_text(ui, row.with_max_x(row.left() + end), -0.01, words, small.clone(), palette.dim_text);
+        }
+        for (place, column) in self.columns.iter().enumerate() {
+            let is_of_focus = column.pairs.contains(&self.state.display.pair);
+            let color = if is_of_focus { palette.text } else { palette.dim_text };
+            let font = if is_of_focus { medium(SMALL_SIZE) } else { small.clone() };
+            let center = row.left() + MAP[0] + self.pitch * place as f32 + HALF_CELL[0];
+            ui.painter().text(pos2(center, row.center().y), egui::Align2::CENTER_CENTER, &column.head, font, color);
+        }
+        let heading = named(heading, Role::Label, "Heading of the map of costs");
+        heading.context_menu(|ui| {
+            let entry = |mapped: MappedCost| (format!("Map J of {}", mapped.name()), Command::MapCost(mapped));
+            entries_ui(ui, MappedCost::ALL.map(entry), commands);
+        });
+    }
+
+    fn row_ui(&self, ui: &mut Ui, condition: &Condition, palette: &Palette, commands: &mut Vec<Command>) {
+        let (state, id) = (self.state, condition.id());
+        let marks = Marks::of(state, id);
+        let flight_state = condition.flight_state();
+        let name = format!("Condition {id}: {}{}", in_words(flight_state), marks.after_name());
+        let is_shown = id == state.condition().id();
+        let height = ROWS[usize::from(self.is_rail)];
+        let (row, response) = row_of_height_ui(ui, palette, (is_shown, false, height), &name);
+        let color = if marks.left_out { palette.quiet_text } else { palette.text };
+        let places = if self.is_rail { [20.0, 0.0, 50.0] } else { PLACES };
+        let body = FontId::proportional(BODY_SIZE);
+        let at = |right: f32| row.with_max_x(row.left() + right);
+        painted_text(ui, at(places[0]), -0.01, &id.to_string(), medium(BODY_SIZE), color);
+        painted_text(ui, at(places[2]), -0.01, &flight_state.airspeed_kt.to_string(), body, color);
+        if !self.is_rail {
+            let is_round = self.classes.is_first_altitude(flight_state);
+            let is_filled = self.classes.is_first_weight(flight_state);
+            paint_mark(ui, pos2(row.left() + places[1], row.center().y), (is_round, is_filled), palette);
+        }
+        self.cells_ui(ui, row, (id, &marks), palette, commands);
+        marks.paint(ui, row, palette);
+        if response.clicked() {
+            commands.push(Command::SelectCondition(id));
+        }
+        response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
+        response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks, palette));
+    }
+
+    /// The cells of a condition; a click on one shows the condition and the response.
+    fn cells_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        (id, marks): (ConditionId, &Marks),
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
+        let left = if self.is_rail { 60.0 } else { MAP[0] };
+        for (place, column) in self.columns.iter().enumerate() {
+            let Some((pair, cost)) = worst_of(self.state, id, &column.pairs) else { continue };
+            let corner = pos2(row.left() + left + self.pitch * place as f32, row.center().y - 0.5 * HALF_CELL[1]);
+            let width = HALF_CELL[0].min(0.5 * self.pitch - 1.5);
+            let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, HALF_CELL[1]));
+            paint_cost(ui, cell, cost, palette);
+            let is_focus = column.pairs.contains(&self.state.display.pair) && id == self.state.condition().id();
+            if is_focus && !self.is_rail {
+                ui.painter().rect_stroke(cell.expand(2.0), 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Outside);
+            }
+            let response = ui.interact(cell, ui.scope_id().with(("cost", id, place)), Sense::CLICK);
+            let response = named(response, Role::Button, cost_words(self.state, id, pair, cost));
+            response.context_menu(|ui| menu_ui(ui, id, marks, commands));
+            if response.on_hover_text(cost_words(self.state, id, pair, cost)).clicked() {
+                commands.extend([Command::SelectCondition(id), Command::FocusPair(pair)]);
+            }
+        }
+    }
+
+    /// What the shades mean.
+    fn key_ui(&self, ui: &mut Ui, palette: &Palette) {
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
+        let lines = [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
+        let small = FontId::proportional(SMALL_SIZE);
+        let of = match self.state.display.mapped_cost {
+            MappedCost::Before => "J before, held responses",
+            MappedCost::Own => "J of the held responses",
+            MappedCost::Scheduled => "J under the schedule",
+        };
+        painted_text(ui, lines[0], 0.0, of, small.clone(), palette.dim_text);
+        painted_text(ui, lines[1], 0.0, "left magnitude, right phase", small.clone(), palette.dim_text);
+        let bar = Rect::from_min_max(pos2(rect.right() - 76.0, rect.top() + 5.0), pos2(rect.right() - 4.0, rect.top() + 11.0));
+        let most = HEAT_COSTS[HEAT_COSTS.len() - 1];
+        let at = |cost: f32| bar.left() + bar.width() * cost / most;
+        let mut mesh = Mesh::default();
+        for (cost, color) in HEAT_COSTS.into_iter().zip(palette.heat) {
+            mesh.colored_vertex(pos2(at(cost), bar.top()), color);
+            mesh.colored_vertex(pos2(at(cost), bar.bottom()), color);
+        }
+        for step in 0..HEAT_COSTS.len() as u32 - 1 {
+            mesh.add_triangle(2 * step, 2 * step + 1, 2 * step + 2);
+            mesh.add_triangle(2 * step + 1, 2 * step + 2, 2 * step + 3);
+        }
+        ui.painter().add(mesh);
+        for cost in [0.0, 50.0, 100.0] {
+            let place = pos2(at(cost), lines[1].center().y);
+            ui.painter().text(place, egui::Align2::CENTER_CENTER, cost.to_string(), small.clone(), palette.dim_text);
+        }
     }
 }
 
-/// Speed, altitude and weight, as far as the marks leave room, which begin at `marked_from` \[pt from the row's left edge\].
-fn paint_flight_state(ui: &Ui, row: Rect, marked_from: f32, condition: &Condition, color: Color32) {
-    let state = condition.flight_state();
-    let altitude = state.altitude.clone().or_else(|| state.altitude_ft.map(|feet| format!("{feet} ft")));
-    let weight = state.weight.clone().or_else(|| state.mass_kg.map(|mass| format!("{mass} kg")));
-    row_text(ui, row, 6.0, &condition.id().to_string(), BODY_SIZE, color);
-    let columns = [
-        (SPEED, format!("{} kt", state.airspeed_kt)),
-        (ALTITUDE, altitude.unwrap_or_else(|| "–".to_owned())),
-        (WEIGHT, weight.unwrap_or_else(|| "–".to_owned())),
-    ];
-    for (room, text) in columns {
-        let room = Room { right: room.right.min(marked_from - COLUMN_GAP), ..room };
-        row_text_within(ui, row, room, &text, BODY_SIZE, color);
+/// The list as a picture: marks, airspeeds and costs, without anything to click.
+pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
+    const ROW: f32 = 17.0;
+    let columns = columns(state);
+    let pitch = ((area.width() - 48.0) / columns.len().max(1) as f32).min(MAP[1]);
+    let classes = Classes::of(state.dataset());
+    let small = FontId::proportional(SMALL_SIZE);
+    let center = |place: usize| area.left() + 48.0 + pitch * place as f32 + HALF_CELL[0];
+    for (place, column) in columns.iter().enumerate() {
+        let at = pos2(center(place), area.top() + 8.0);
+        ui.painter().text(at, egui::Align2::CENTER_CENTER, &column.head, small.clone(), palette.dim_text);
+    }
+    for (number, condition) in state.dataset().conditions().iter().take(12).enumerate() {
+        let row = Rect::from_min_size(area.min + vec2(0.0, 18.0 + ROW * number as f32), vec2(area.width(), ROW));
+        let flight_state = condition.flight_state();
+        let shape = (classes.is_first_altitude(flight_state), classes.is_first_weight(flight_state));
+        paint_mark(ui, pos2(row.left() + 6.0, row.center().y), shape, palette);
+        let airspeed = flight_state.airspeed_kt.to_string();
+        painted_text(ui, row.with_max_x(row.left() + 40.0), -0.01, &airspeed, small.clone(), palette.dim_text);
+        for (place, column) in columns.iter().enumerate() {
+            let Some((_, cost)) = worst_of(state, condition.id(), &column.pairs) else { continue };
+            let cell = Rect::from_center_size(pos2(center(place), row.center().y), vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]));
+            paint_cost(ui, cell, cost, palette);
+        }
     }
 }
 
+/// Magnitude in the left half, phase in the right one.
+fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
+    let middle = cell.center().x;
+    let halves = [(cell.with_max_x(middle - 0.5), cost.magnitude), (cell.with_min_x(middle + 0.5), cost.phase)];
+    for (half, cost) in halves {
+        ui.painter().rect_filled(half, CornerRadius::same(2), palette.heat_of(cost));
+    }
+}
+
+fn cost_words(state: &State, condition: ConditionId, pair: gdcm_core::dataset::Pair, cost: Cost) -> String {
+    let [magnitude, phase] = [cost.magnitude, cost.phase].map(|cost| decimals(cost, 1));
+    format!("{} of condition {condition}: J of magnitude {magnitude}, of phase {phase}", state.dataset().pair_name(pair))
+}
+
+/// The dot of a condition, as it is in Net gain.
+fn paint_mark(ui: &Ui, at: egui::Pos2, (is_round, is_filled): (bool, bool), palette: &Palette) {
+    let (fill, stroke) = match is_filled {
+        true => (palette.perturbed, Stroke::NONE),
+        false => (Color32::TRANSPARENT, Stroke::new(1.6, palette.perturbed)),
+    };
+    if is_round {
+        ui.painter().circle(at, if is_filled { 4.2 } else { 3.5 }, fill, stroke);
+    } else {
+        let reach = if is_filled { 5.2 } else { 4.4 };
+        let corners = [vec2(0.0, -reach), vec2(reach, 0.0), vec2(0.0, reach), vec2(-reach, 0.0)].map(|by| at + by);
+        ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), fill, stroke));
+    }
+}
 fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Vec<Command>) {
     let hold_out = if marks.held_out { "No longer hold out" } else { "Hold out, to judge the schedule" };
     let schedule = if marks.left_out { "Include in the schedule" } else { "Leave out of the schedule" };
@@ -143,37 +363,26 @@ impl Marks {
         }
     }
 
-    /// Paints the marks from the right; returns where they begin \[pt from the row's left edge\].
-    fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) -> f32 {
-        let mut right = -6.0;
-        let mut mark = |text: String, color: Color32| {
-            let place = row_text(ui, row, right, &text, SMALL_SIZE, color);
-            right = place.left() - row.right() - 8.0;
-        };
-        if self.failure.is_some() {
-            mark("⚠ no result".to_owned(), palette.warning);
-        }
-        for (count, symbol) in [(self.unmatched_delays, "τ"), (self.unmatched_gains, "k"), (self.suggested, "⚠")] {
-            if count > 0 {
-                mark(format!("{symbol} {count}"), palette.warning);
-            }
+    /// ⚠ where something is still to be decided; a stroke through a condition that is left out, an accent on one that is held out.
+    fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
+        if self.failure.is_some() || self.suggested + self.unmatched_gains + self.unmatched_delays > 0 {
+            painted_text(ui, row, -4.0, "⚠", FontId::proportional(SMALL_SIZE), palette.warning);
         }
         if self.held_out {
-            mark("held out".to_owned(), palette.accent);
+            ui.painter().vline(row.left() + 1.0, row.shrink(3.0).y_range(), Stroke::new(2.0, palette.accent));
         } else if self.left_out {
-            mark("left out".to_owned(), palette.dim_text);
+            ui.painter().hline(row.left() + 4.0..=row.left() + 22.0, row.center().y, Stroke::new(1.0, palette.quiet_text));
         }
-        row.width() + right + 8.0
     }
 
     fn sentences(&self) -> Vec<String> {
         let counted = [
-            ("⚠", self.suggested, "physics models suggested as outliers, not rejected"),
-            ("k", self.unmatched_gains, "held gains that could not be matched"),
-            ("τ", self.unmatched_delays, "held delays that could not be matched, besides those that need lead"),
+            (self.suggested, "physics models suggested as outliers, not rejected"),
+            (self.unmatched_gains, "held gains that could not be matched"),
+            (self.unmatched_delays, "held delays that could not be matched, besides those that need lead"),
         ];
-        let counted = counted.into_iter().filter(|(_, count, _)| *count > 0);
-        let counted = counted.map(|(symbol, count, words)| format!("{symbol} {count}: {words}"));
+        let counted = counted.into_iter().filter(|(count, _)| *count > 0);
+        let counted = counted.map(|(count, words)| format!("{count} {words}"));
         let held_out = "Held out: analysed, and the schedule is judged by it; right-click ends that";
         let left_out = "Left out of the schedule; right-click includes it";
         let states = [(self.held_out, held_out), (self.left_out, left_out)];
@@ -182,9 +391,9 @@ impl Marks {
     }
 }
 
-fn tooltip_ui(ui: &mut Ui, condition: &Condition, marks: &Marks) {
+fn tooltip_ui(ui: &mut Ui, condition: &Condition, marks: &Marks, palette: &Palette) {
     let state = condition.flight_state();
-    ui.label(RichText::new(&state.name).strong());
+    ui.label(egui::RichText::new(&state.name).font(medium(BODY_SIZE)).color(palette.text));
     let mut values = vec![format!("{} kt true airspeed", state.airspeed_kt)];
     values.extend(state.altitude_ft.map(|feet| format!("{feet} ft")));
     values.extend(state.mass_kg.map(|mass| format!("{mass} kg")));

@@ -5,7 +5,8 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
-use super::{Command, Palette, SMALL_SIZE, TableKind};
+use super::palette::medium;
+use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, TableKind};
 
 impl Palette {
     /// A small dim text: what stands beside a value.
@@ -106,7 +107,17 @@ pub const ROW_HEIGHT: f32 = 20.0;
 
 /// Allocates a row that can be clicked, paints its background, and names it for screen readers and tests.
 pub fn row_ui(ui: &mut Ui, palette: &Palette, selected: bool, pointed: bool, name: &str) -> (Rect, Response) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT), Sense::click());
+    row_of_height_ui(ui, palette, (selected, pointed, ROW_HEIGHT), name)
+}
+
+/// The same, of another height \[pt\].
+pub fn row_of_height_ui(
+    ui: &mut Ui,
+    palette: &Palette,
+    (selected, pointed, height): (bool, bool, f32),
+    name: &str,
+) -> (Rect, Response) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, ui.is_enabled(), selected, name));
     let fill = if selected {
         palette.selected
@@ -115,7 +126,7 @@ pub fn row_ui(ui: &mut Ui, palette: &Palette, selected: bool, pointed: bool, nam
     } else {
         Color32::TRANSPARENT
     };
-    ui.painter().rect_filled(rect, 3.0, fill);
+    ui.painter().rect_filled(rect, 4.0, fill);
     (rect, response)
 }
 
@@ -182,18 +193,23 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     if fits == 0 { String::new() } else { keeping(fits) }
 }
 
-/// Paints text at `x` points from the row's left edge (from its right edge where negative), centred in height.
-pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color32) -> Rect {
+/// Paints text of a font at `x` points from the row's left edge (before its right edge where negative), centred in height.
+pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color: Color32) -> Rect {
     let (left, align) =
         if x < 0.0 { (row.right() + x, Align2::RIGHT_CENTER) } else { (row.left() + x, Align2::LEFT_CENTER) };
-    ui.painter().text(pos2(left, row.center().y), align, text, FontId::proportional(size), color)
+    ui.painter().text(pos2(left, row.center().y), align, text, font, color)
 }
 
-/// A dim heading on the left, a value on the right.
+/// Paints text at `x` points from the row's left edge (from its right edge where negative), centred in height.
+pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color32) -> Rect {
+    painted_text(ui, row, x, text, FontId::proportional(size), color)
+}
+
+/// A heading on the left, a value on the right.
 pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, value: &str) -> egui::Response {
     ui.add_space(4.0);
     let shown = ui.horizontal(|ui| {
-        ui.label(palette.small(title).strong());
+        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.label(palette.small(value));
         });

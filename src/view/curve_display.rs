@@ -33,6 +33,10 @@ pub struct CurveDisplay {
     pub shows_muad: bool,
     /// Models that a box was drawn over.
     pub selected: BTreeSet<ModelId>,
+    /// Whether the bands of the identified models are drawn.
+    pub shows_bands: bool,
+    /// The role that is drawn above all others.
+    pub raised: Option<Role>,
 }
 
 impl Default for CurveDisplay {
@@ -49,6 +53,8 @@ impl Default for CurveDisplay {
             lists_values: true,
             shows_muad: false,
             selected: BTreeSet::new(),
+            shows_bands: false,
+            raised: None,
         }
     }
 }
@@ -64,6 +70,12 @@ pub enum CurveCommand {
     DrawPhaseErrors(PhaseErrorUnit),
     /// Hide the curves of a role, or show them again.
     ToggleRole(Role),
+    /// Draw the curves of this role alone; again: all of them.
+    ShowRoleAlone(Role),
+    /// Draw the curves of this role above all others; again: as usual.
+    RaiseRole(Role),
+    /// Draw the bands of the identified models, or not.
+    ShowBands(bool),
     /// Do not draw a model.
     HideModel(ModelId),
     /// Draw every model and every role.
@@ -99,6 +111,12 @@ impl CurveDisplay {
                     self.hidden_roles.insert(role);
                 }
             }
+            CurveCommand::ShowRoleAlone(role) => {
+                let others: BTreeSet<Role> = Role::ALL.into_iter().filter(|other| *other != role).collect();
+                self.hidden_roles = if self.hidden_roles == others { BTreeSet::new() } else { others };
+            }
+            CurveCommand::RaiseRole(role) => self.raised = (self.raised != Some(role)).then_some(role),
+            CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
             CurveCommand::HideModel(model) => {
                 self.hidden_models.insert(model);
             }
@@ -196,6 +214,11 @@ fn unit_entries(state: &State) -> Vec<Entry> {
             CurveCommand::ListValues(!curves.lists_values),
         ),
         entry(
+            if curves.shows_bands { "Hide the bands of identified models" } else { "Show the bands of identified models" },
+            "How far each identified response may lie from its curve, at 95 %",
+            CurveCommand::ShowBands(!curves.shows_bands),
+        ),
+        entry(
             if curves.shows_muad { "Hide what a pilot does not notice" } else { "Show what a pilot does not notice" },
             "Envelopes of maximum unnoticeable added dynamics in the plot of errors, and where the mismatch leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
@@ -257,6 +280,20 @@ mod tests {
         assert_eq!(display.pinned, [2.0, 3.0]);
         display.carry_out(CurveCommand::UnpinCursors);
         assert!(display.pinned.is_empty());
+    }
+
+    #[test]
+    fn a_role_can_be_shown_alone_and_in_front_and_again_as_usual() {
+        let mut display = CurveDisplay::default();
+        for command in [CurveCommand::ShowRoleAlone(Role::Corrected), CurveCommand::RaiseRole(Role::Nominal)] {
+            display.carry_out(command);
+        }
+        assert_eq!((display.hidden_roles.len(), display.raised), (Role::ALL.len() - 1, Some(Role::Nominal)));
+        assert!(!display.hidden_roles.contains(&Role::Corrected));
+        for command in [CurveCommand::ShowRoleAlone(Role::Corrected), CurveCommand::RaiseRole(Role::Nominal)] {
+            display.carry_out(command);
+        }
+        assert_eq!(display, CurveDisplay::default());
     }
 
     #[test]

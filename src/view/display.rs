@@ -14,7 +14,9 @@ use super::plot::{
     PhaseUnit, Role,
 };
 use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, View};
-use super::{Arrangement, CurveDisplay, PlotStyle, Sorting};
+use super::cost_map::MappedCost;
+use super::start_page::OpensWith;
+use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
 #[derive(Debug, Default)]
@@ -31,6 +33,22 @@ pub struct Display {
     pub asked: Option<ExplainTarget>,
     /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
+    /// Whether the window is so wide that names and words have all of their room.
+    pub is_wide: bool,
+    /// What the program opens with.
+    pub opens_with: OpensWith,
+    /// Whether the left panel is shown in full; by the width of the window where that was not chosen.
+    pub left_open: Option<bool>,
+    /// The sheet over the middle of the window.
+    pub sheet: Option<Sheet>,
+    /// Whether the settings are unfolded, over matrix and card.
+    pub settings_open: bool,
+    /// Whether the settings that are seldom changed are unfolded.
+    pub advanced_open: bool,
+    /// Whether the identified models are unfolded.
+    pub identified_open: bool,
+    /// What the map of costs shows.
+    pub mapped_cost: MappedCost,
     /// Unit of frequencies.
     pub unit: FrequencyUnit,
     /// How curves are drawn.
@@ -120,6 +138,10 @@ impl Display {
 pub struct Preferences {
     /// How the plots share the middle of the window.
     pub arrangement: Option<Arrangement>,
+    /// What the program opens with.
+    pub opens_with: OpensWith,
+    /// Whether the left panel is shown in full, where that was chosen.
+    pub left_open: Option<bool>,
     /// Unit of frequencies.
     pub frequency_unit: FrequencyUnit,
     /// How magnitudes are read.
@@ -132,6 +154,8 @@ pub struct Preferences {
     pub hidden_roles: BTreeSet<Role>,
     /// Whether the plot of errors shows what a pilot does not notice.
     pub shows_muad: bool,
+    /// Whether the bands of identified models are drawn.
+    pub shows_bands: bool,
     /// Whether the values at the cursor are not listed.
     pub lists_no_values: bool,
     /// How curves are drawn.
@@ -143,12 +167,15 @@ impl Preferences {
     pub fn of(display: &Display) -> Self {
         Self {
             arrangement: Some(display.arrangement.clone()),
+            opens_with: display.opens_with,
+            left_open: display.left_open,
             frequency_unit: display.unit,
             magnitude: display.curves.magnitude,
             phase: display.curves.phase,
             phase_error: display.curves.phase_error,
             hidden_roles: display.curves.hidden_roles.clone(),
             shows_muad: display.curves.shows_muad,
+            shows_bands: display.curves.shows_bands,
             lists_no_values: !display.curves.lists_values,
             looks: display.looks,
         }
@@ -157,12 +184,15 @@ impl Preferences {
     /// Gives a window these preferences.
     pub fn apply(&self, display: &mut Display) {
         display.arrangement = self.arrangement.clone().and_then(Arrangement::if_whole).unwrap_or_default();
+        display.opens_with = self.opens_with;
+        display.left_open = self.left_open;
         display.unit = self.frequency_unit;
         display.curves.magnitude = self.magnitude;
         display.curves.phase = self.phase;
         display.curves.phase_error = self.phase_error;
         display.curves.hidden_roles.clone_from(&self.hidden_roles);
         display.curves.shows_muad = self.shows_muad;
+        display.curves.shows_bands = self.shows_bands;
         display.curves.lists_values = !self.lists_no_values;
         display.looks = self.looks.within_limits();
     }

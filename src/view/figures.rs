@@ -1,13 +1,13 @@
 //! What a view shows as a figure on paper, and the button that takes it away.
 
 use egui::containers::menu::MenuButton;
-use egui::{RichText, Role, Ui};
+use egui::{Button, Role, Ui};
 use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
 use super::views::{bode_options, condition_source, net_gain_pairs};
-use super::{Command, SMALL_SIZE, State, View, named};
+use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
@@ -73,8 +73,7 @@ pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Comma
     if view.kind().figure.is_none() {
         return;
     }
-    let text = RichText::new("⬇").size(SMALL_SIZE);
-    let (button, _) = MenuButton::new(text).ui(ui, |ui| {
+    let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
         if ui.button("Copy the numbers").on_hover_text("As CSV, to the clipboard").clicked() {
             commands.push(Command::CopyFigure(view));
             ui.close();

@@ -9,18 +9,24 @@ use super::Palette;
 /// A part of the window, in the order of the F6 key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
-    /// The list of conditions.
-    Conditions,
-    /// The bundles of the condition shown.
-    Models,
-    /// The plots.
+    /// The plots of the view in front.
     Plots,
+    /// The plots below them.
+    Dock,
+    /// What is to be done.
+    Verdict,
+    /// The result.
+    Result,
     /// The constraint matrix.
     Matrix,
     /// The settings.
     Settings,
-    /// The result and its export.
-    Result,
+    /// The way to the export.
+    Export,
+    /// The list of conditions.
+    Conditions,
+    /// The bundles of the condition shown.
+    Models,
 }
 
 /// What the regions were found to hold when they were drawn.

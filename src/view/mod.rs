@@ -1,5 +1,6 @@
 //! What the window shows: functions that draw the state and say what the engineer asks for.
 
+pub mod answer_panel;
 pub mod arrangement;
 pub mod assembling;
 pub mod bars;
@@ -9,6 +10,7 @@ pub mod command_palette;
 pub mod command_table;
 pub mod conditions_panel;
 pub mod controls;
+pub mod cost_map;
 pub mod curve_display;
 pub mod display;
 pub mod explanation;
@@ -22,23 +24,28 @@ pub mod number_field;
 pub mod palette;
 pub mod plot;
 pub mod plot_style;
+pub mod reasons;
 pub mod records;
+pub mod response_card;
 pub mod result_panel;
 pub mod results;
 pub mod settings_panel;
+pub mod sheet;
+pub mod start_page;
 pub mod state;
 pub mod table_view;
 pub mod tables;
+pub mod verdict;
 pub mod views;
 
-pub use arrangement::{Arrangement, Need, Preset, View, ViewTitle};
+pub use arrangement::{Arrangement, Need, View, ViewGroup, ViewTitle};
 pub use bars::Bar;
 pub use command::{Command, FormKind};
 pub use command_palette::{PaletteForm, command_palette_ui};
 pub use command_table::{Entry, Menu, Reach, every_command};
 pub use controls::{
     ROW_HEIGHT, Room, button_ui, check_ui, elided_among, entries_ui, entry_ui, heading_ui, is_entered, name_text_field,
-    named, named_switch, number_entry_ui, row_text, row_text_within, row_ui, table_heading_ui, table_menu_ui,
+    named, named_switch, number_entry_ui, painted_text, row_of_height_ui, row_text, row_text_within, row_ui, table_heading_ui, table_menu_ui,
     text_field_ui, typed_number,
 };
 use curve_display::curve_entries;
@@ -58,6 +65,7 @@ pub use plot_style::{CurveColors, PlotStyle};
 use results::bar_words;
 pub use results::{Background, FirstResult, Results};
 use settings_panel::choice_ui;
+pub use sheet::{Sheet, sheet_ui};
 pub use state::{Forms, Notice, NoticeKind, RecentFile, State, Sureness};
 pub use table_view::Sorting;
 pub use tables::{TableKind, table_of};

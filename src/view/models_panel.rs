@@ -1,70 +1,203 @@
 //! The bundles of the condition shown: which models are kept, which represents, which are suspect.
 
-use egui::{Checkbox, Rect, RichText, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Checkbox, FontId, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{Edit, ExplainTarget};
 
+use gdcm_files::figure::compact;
+
+use super::answer_panel::chevron;
+use super::palette::medium;
 use super::{
     BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui, named,
-    named_switch, question_menu_ui, region_ui, row_text, table_heading_ui,
+    named_switch, painted_text, question_menu_ui, region_ui, row_text, table_heading_ui, table_menu_ui,
 };
 
-/// The physics models with discontinuity ratios, and what may be done with all of them at once.
-pub fn physics_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+/// The bundles of the condition shown, below one another in the left panel: the physics models, and the identified ones folded at
+/// its foot.
+pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
-        bundle_ui(ui, state, palette, BundleKind::Physics, commands);
-        at_once_ui(ui, state, commands);
+        let is_open = state.display.identified_open;
+        let room = ui.available_height();
+        let models = state.condition().bundle(BundleKind::Identified).len() as f32;
+        let height = if is_open { (FOLD + ROW_HEIGHT * models + 8.0).min(0.5 * room) } else { FOLD };
+        let frame = egui::Frame::new();
+        egui::Panel::bottom("identified models").frame(frame).exact_size(height).show_separator_line(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 0.0;
+            fold_ui(ui, state, is_open, palette, commands);
+            if is_open {
+                rows_ui(ui, state, palette, BundleKind::Identified, commands);
+            }
+        });
+        ui.spacing_mut().item_spacing.y = 0.0;
+        physics_ui(ui, state, palette, commands);
     });
 }
 
-/// What may be done with all of them at once.
-fn at_once_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+/// One bundle in a sheet beside the rail.
+pub fn bundle_sheet_ui(
+    ui: &mut Ui,
+    state: &State,
+    kind: BundleKind,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    region_ui(ui, Region::Models, |ui| match kind {
+        BundleKind::Physics => physics_ui(ui, state, palette, commands),
+        BundleKind::Identified => rows_ui(ui, state, palette, BundleKind::Identified, commands),
+    });
+}
+
+/// Height of the line that folds the identified models \[pt\].
+const FOLD: f32 = 36.0;
+
+fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let kind = BundleKind::Physics;
+    let count = state.condition().bundle(kind).len();
+    let rejected = state.study.choice(state.condition().id()).bundle(kind).rejected.len();
+    let title = format!("Physics models of {}", state.condition().id());
+    let kept = format!("{} of {count}", count - rejected);
+    table_heading_ui(ui, palette, (&title, &kept), TableKind::of_bundle(kind), commands);
+    at_once_ui(ui, state, palette, commands);
+    rows_ui(ui, state, palette, kind, commands);
+}
+
+/// What may be done with all of them at once: above the list, always in reach.
+fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
-    let rejected = &choice.physics.rejected;
+    let rejected = choice.physics.rejected.len();
     let open = state.shown().map(|shown| state.open_suggestions(shown)).unwrap_or_default();
-    ui.horizontal_wrapped(|ui| {
-        let label =
-            if open.is_empty() { "Reject suggested".to_owned() } else { format!("Reject {} suggested", open.len()) };
-        let button = ui.add_enabled(!open.is_empty(), egui::Button::new(label));
-        let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
-        if button.on_hover_text(&hint).on_disabled_hover_text("No kept model is suggested as an outlier").clicked() {
-            commands.push(Edit::reject_physics(condition, &open).into());
-        }
-        let any = !rejected.is_empty() || !choice.identified.rejected.is_empty();
-        let restore = ui.add_enabled(any, egui::Button::new("Restore all"));
-        if restore.on_hover_text("Put every rejected model of this condition back").clicked() {
-            commands.push(Edit::RestoreAll { condition }.into());
-        }
+    ui.allocate_ui_with_layout(vec2(ui.available_width(), 28.0), Layout::left_to_right(Align::Center), |ui| {
+        let words = match (open.len(), rejected) {
+            (0, 0) => "none suggested".to_owned(),
+            (0, rejected) => format!("{rejected} rejected"),
+            (open, 0) => format!("{open} suggested"),
+            (open, rejected) => format!("{open} suggested, {rejected} rejected"),
+        };
+        ui.label(if open.is_empty() { palette.small(words) } else { palette.small_warning(words) });
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let any = rejected > 0 || !choice.identified.rejected.is_empty();
+            if any {
+                let restore = ui.button("Restore all");
+                if restore.on_hover_text("Put every rejected model of this condition back").clicked() {
+                    commands.push(Edit::RestoreAll { condition }.into());
+                }
+            }
+            if !open.is_empty() {
+                let button = named(ui.button("Reject suggested"), Role::Button, "Reject suggested models");
+                let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
+                if button.on_hover_text(hint).clicked() {
+                    commands.push(Edit::reject_physics(condition, &open).into());
+                }
+            }
+        });
     });
 }
 
-/// The identified models with their orders.
-pub fn identified_models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    region_ui(ui, Region::Models, |ui| bundle_ui(ui, state, palette, BundleKind::Identified, commands));
-}
-
-fn bundle_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
-    let models = state.condition().bundle(kind);
-    let rejected = &state.study.choice(state.condition().id()).bundle(kind).rejected;
-    let title = match kind {
-        BundleKind::Physics => format!("Physics models of {}", state.condition().id()),
-        BundleKind::Identified => "Identified models".to_owned(),
-    };
-    let kept = format!("{} of {}", models.len() - rejected.len(), models.len());
-    table_heading_ui(ui, palette, (&title, &kept), TableKind::of_bundle(kind), commands);
-    let names = short_names(models);
-    for (place, model) in models.iter().enumerate() {
-        let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
-        let row = ModelRow::of(state, (kind, model), names[place], neighbours);
-        row.ui(ui, palette, commands);
+/// The line that folds and unfolds the identified models.
+fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), FOLD), Sense::click());
+    ui.painter().hline(row.expand2(vec2(12.0, 0.0)).x_range(), row.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
+    painted_text(ui, row, 16.0, "Identified models", medium(BODY_SIZE), palette.text);
+    let models = state.condition().bundle(BundleKind::Identified);
+    let rejected = state.study.choice(state.condition().id()).identified.rejected.len();
+    let mut words = format!("{} of {}", models.len() - rejected, models.len());
+    let name = state.shown().map(|shown| shown.representative_name(BundleKind::Identified));
+    let order = models.iter().find(|model| Some(model.name.as_str()) == name).and_then(Model::order);
+    if let Some(order) = order {
+        words = format!("order {order} · {words}");
+    }
+    let place = painted_text(ui, row, -0.01, &words, FontId::proportional(SMALL_SIZE), palette.dim_text);
+    if order.is_some() {
+        let star = row.with_max_x(place.left() - 3.0);
+        painted_text(ui, star, -0.01, "★", FontId::proportional(SMALL_SIZE), palette.identified);
+    }
+    table_menu_ui(ui, &response, TableKind::of_bundle(BundleKind::Identified), commands);
+    let response = named_switch(response, Role::Button, is_open, "Identified models");
+    if response.clicked() {
+        commands.push(Command::ShowIdentified(!is_open));
     }
 }
 
-/// Width of a row \[pt\] from which its ratio has a bar: in a narrower one the name needs the room.
-const LEAST_WITH_BAR: f32 = 205.0;
+fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
+    let models = state.condition().bundle(kind);
+    let trims = TrimColumns::of(models).filter(|_| kind == BundleKind::Physics);
+    if kind == BundleKind::Physics {
+        heads_ui(ui, trims.as_ref(), palette);
+    }
+    let names = short_names(models);
+    // No control of a row is higher than the row.
+    ui.spacing_mut().interact_size.y = 16.0;
+    ScrollArea::vertical().id_salt(kind).auto_shrink([false, true]).show(ui, |ui| {
+        for (place, model) in models.iter().enumerate() {
+            let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
+            let row = ModelRow::of(state, (kind, model), names[place], neighbours);
+            row.ui(ui, trims.as_ref(), palette, commands);
+        }
+    });
+}
+
+fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
+    let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
+    let small = FontId::proportional(SMALL_SIZE);
+    for (head, end) in trims.iter().flat_map(|trims| trims.heads.iter().zip(TRIM_ENDS)) {
+        painted_text(ui, row.with_max_x(row.left() + end), -0.01, head, small.clone(), palette.dim_text);
+    }
+    painted_text(ui, row, -1.0, "discontinuity", small, palette.dim_text);
+}
+
+/// Where the columns of a trim end \[pt from the row's left edge\].
+const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
+
+/// The coordinates of the perturbed trims, as columns.
+struct TrimColumns {
+    keys: Vec<String>,
+    heads: Vec<String>,
+}
+
+impl TrimColumns {
+    /// None where a model does not say its trim, or where there are more coordinates than columns.
+    fn of(models: &[Model]) -> Option<Self> {
+        let mut keys: Vec<String> = Vec::new();
+        for model in models {
+            for key in model.perturbation()?.keys() {
+                if !keys.contains(key) {
+                    keys.push(key.clone());
+                }
+            }
+        }
+        let heads = keys.iter().map(|key| trim_head(key)).collect();
+        (!keys.is_empty() && keys.len() <= TRIM_ENDS.len()).then_some(Self { keys, heads })
+    }
+
+    /// The offsets of a model, "·" for none; nothing where it has none at all.
+    fn offsets(&self, model: &Model) -> Option<Vec<String>> {
+        let trim = model.perturbation().filter(|trim| trim.values().any(|offset| *offset != 0.0))?;
+        let offset = |key: &String| trim.get(key).copied().filter(|offset| *offset != 0.0);
+        let text = |offset: f64| format!("{}{}", if offset > 0.0 { "+" } else { "" }, compact(offset));
+        Some(self.keys.iter().map(|key| offset(key).map_or("·".to_owned(), text)).collect())
+    }
+}
+
+/// "V kt" of "airspeed_kt": a name of three letters or less, with its unit where there is room for it.
+fn trim_head(key: &str) -> String {
+    match key {
+        "airspeed_kt" => "V kt".to_owned(),
+        "rate_of_climb_fpm" => "climb".to_owned(),
+        "roll_deg" => "roll °".to_owned(),
+        "pitch_deg" => "pitch °".to_owned(),
+        "yaw_deg" | "heading_deg" => "yaw °".to_owned(),
+        other => other.split('_').next().unwrap_or(other).chars().take(6).collect(),
+    }
+}
+
+/// The discontinuity ratio that fills its bar.
+const FULL_RATIO: f64 = 4.0;
 
 struct ModelRow<'a> {
     id: ModelId,
@@ -113,7 +246,7 @@ impl<'a> ModelRow<'a> {
         }
     }
 
-    fn ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
+    fn ui(&self, ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette, commands: &mut Vec<Command>) {
         let width = ui.available_width();
         // No stop of the Tab key: what can be done is on its box, on its star, and in the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
@@ -126,7 +259,10 @@ impl<'a> ModelRow<'a> {
         // Of a thousand rows few are in sight.
         if ui.is_rect_visible(rect) {
             let value_width = self.paint_value(ui, rect, palette);
-            self.paint_name(ui, rect, value_width, palette);
+            match trims.and_then(|trims| trims.offsets(self.model)) {
+                Some(offsets) => self.paint_offsets(ui, rect, &offsets, palette),
+                None => self.paint_name(ui, rect, value_width, palette),
+            }
         }
         if response.contains_pointer() {
             commands.push(Command::Hover(self.id.clone()));
@@ -205,21 +341,16 @@ impl<'a> ModelRow<'a> {
             return 60.0;
         }
         if let Some(ratio) = self.ratio {
-            row_text(ui, rect, -5.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
-            if rect.width() < LEAST_WITH_BAR {
-                if self.is_suspect() {
-                    ui.painter().circle_filled(pos2(rect.right() - 40.0, rect.center().y), 3.0, palette.warning);
-                }
-                return 48.0;
-            }
-            let full = 40.0;
-            let bar = Rect::from_min_size(pos2(rect.right() - 84.0, rect.center().y - 2.0), vec2(full, 4.0));
+            row_text(ui, rect, -1.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
+            let full = 38.0;
+            let bar = Rect::from_min_size(pos2(rect.right() - 74.0, rect.center().y - 2.0), vec2(full, 4.0));
             ui.painter().rect_filled(bar, 2.0, palette.line);
-            // Four times what the perturbation explains fills the bar.
-            let part = (ratio / 4.0).clamp(0.0, 1.0) as f32;
-            let color = if self.is_suspect() { palette.warning } else { palette.accent };
-            ui.painter().rect_filled(Rect::from_min_size(bar.min, vec2(full * part, 4.0)), 2.0, color);
-            return 88.0;
+            let at = |ratio: f64| full * (ratio / FULL_RATIO).clamp(0.0, 1.0) as f32;
+            let color = if self.is_suspect() && self.kept { palette.warning } else { palette.quiet_mark };
+            ui.painter().rect_filled(Rect::from_min_size(bar.min, vec2(at(ratio), 4.0)), 2.0, color);
+            let tick = bar.left() + at(SUGGESTION_RATIO);
+            ui.painter().vline(tick, bar.expand(2.0).y_range(), egui::Stroke::new(1.0, palette.dim_text));
+            return 80.0;
         }
         if self.id.bundle == BundleKind::Identified {
             let words = self.model.order().map_or("measured".to_owned(), |order| format!("order {order}"));
@@ -227,6 +358,18 @@ impl<'a> ModelRow<'a> {
             return 60.0;
         }
         5.0
+    }
+
+    /// The offsets of its trim, struck out where it is rejected.
+    fn paint_offsets(&self, ui: &Ui, rect: Rect, offsets: &[String], palette: &Palette) {
+        for (offset, end) in offsets.iter().zip(TRIM_ENDS) {
+            let color = if !self.kept || offset == "·" { palette.rejected } else { palette.text };
+            let upto = rect.with_max_x(rect.left() + end);
+            let place = painted_text(ui, upto, -0.01, offset, FontId::proportional(BODY_SIZE), color);
+            if !self.kept && offset != "·" {
+                ui.painter().hline(place.x_range(), place.center().y, egui::Stroke::new(1.0, color));
+            }
+        }
     }
 
     fn paint_name(&self, ui: &Ui, rect: Rect, value_width: f32, palette: &Palette) {

@@ -2,21 +2,37 @@
 
 use egui::epaint::Shadow;
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
+use std::sync::Arc;
+
 use egui::{
-    Color32, Context, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme,
+    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme,
     Visuals, vec2,
 };
 
 use super::plot_style::{self, CurveColors, PlotStyle};
 
-/// Size of running text \[pt\].
-pub const BODY_SIZE: f32 = 13.0;
-/// Size of secondary text: captions, tooltips, badges \[pt\].
-pub const SMALL_SIZE: f32 = 11.5;
+/// Size of captions: axes, units, bars, heads of tables, chips, the status \[pt\].
+pub const SMALL_SIZE: f32 = 11.0;
+/// Size of running text: rows, controls, words \[pt\].
+pub const BODY_SIZE: f32 = 12.5;
+/// Size of the response in focus, and of the counts of the verdict \[pt\].
+pub const TITLE_SIZE: f32 = 15.0;
+/// Size of the heading of the start page \[pt\].
+pub const DISPLAY_SIZE: f32 = 20.0;
+
+/// The second cut of the typeface: headings of sections, what is selected, held figures, buttons.
+pub fn medium(size: f32) -> FontId {
+    FontId::new(size, FontFamily::Name(MEDIUM.into()))
+}
+
+const MEDIUM: &str = "medium";
 
 pub(super) const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
+
+/// The costs J between which the colours of [`Palette::heat`] are mixed.
+pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
 /// The design tokens of one theme: each colour has one meaning everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,8 +69,18 @@ pub struct Palette {
     pub accent: Color32,
     /// Cautions, and what got worse.
     pub warning: Color32,
-    /// Proofs, and what got better.
+    /// What is met.
     pub good: Color32,
+    /// Behind a verdict that is not met, and behind what is not valid.
+    pub warning_ground: Color32,
+    /// Behind a verdict that is met.
+    pub good_ground: Color32,
+    /// Figures that are null.
+    pub quiet_text: Color32,
+    /// Bars and ticks of boxes.
+    pub quiet_mark: Color32,
+    /// J of the heat map at [`HEAT_COSTS`]: one hue, told apart by its lightness alone.
+    pub heat: [Color32; 5],
     /// What the widths of curves are multiplied by.
     pub line_width: f32,
 }
@@ -68,7 +94,7 @@ impl Palette {
             panel: hex(0x1e2127),
             raised: hex(0x262a31),
             line: hex(0x343a44),
-            grid: hex(0x2a2f37),
+            grid: hex(0x262a31),
             text: hex(0xd7dae0),
             dim_text: hex(0xa4acb9),
             selected: hex(0x21405f),
@@ -78,8 +104,13 @@ impl Palette {
             corrected: hex(0x5fcf80),
             rejected: hex(0x878f9c),
             accent: hex(0x5aa9e6),
-            warning: hex(0xe0a03a),
+            warning: hex(0xf3935a),
             good: hex(0x56c08c),
+            warning_ground: hex(0x33251d),
+            good_ground: hex(0x1b2d26),
+            quiet_text: hex(0x8b93a1),
+            quiet_mark: hex(0x6d7583),
+            heat: [hex(0x2b3038), hex(0x574337), hex(0x9b613d), hex(0xe07f45), hex(0xffb083)],
             line_width: 1.0,
         }
     }
@@ -88,11 +119,11 @@ impl Palette {
     pub const fn light() -> Self {
         Self {
             is_dark: false,
-            background: hex(0xf4f5f7),
+            background: hex(0xf7f8fa),
             panel: hex(0xffffff),
             raised: hex(0xeef0f3),
             line: hex(0xd4d8de),
-            grid: hex(0xe7e9ed),
+            grid: hex(0xe9ebef),
             text: hex(0x22262e),
             dim_text: hex(0x586070),
             selected: hex(0xd3e5f6),
@@ -102,8 +133,13 @@ impl Palette {
             corrected: hex(0x1d8a47),
             rejected: hex(0x646c79),
             accent: hex(0x1b67a6),
-            warning: hex(0x8f5400),
+            warning: hex(0xa9410a),
             good: hex(0x187049),
+            warning_ground: hex(0xfdf0e7),
+            good_ground: hex(0xe6f4ec),
+            quiet_text: hex(0x636b79),
+            quiet_mark: hex(0x8a92a0),
+            heat: [hex(0xeceef2), hex(0xf6d3b8), hex(0xee9f68), hex(0xd1661f), hex(0x8c3706)],
             line_width: 1.0,
         }
     }
@@ -138,6 +174,19 @@ impl Palette {
         color.lerp_to_gamma(self.text, amount)
     }
 
+    /// The colour of a cost J in a map of costs; the last one beyond the last of [`HEAT_COSTS`].
+    pub fn heat_of(&self, cost: f64) -> Color32 {
+        let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
+        let above = HEAT_COSTS.iter().position(|end| cost < *end).unwrap_or(4).max(1);
+        let part = (cost - HEAT_COSTS[above - 1]) / (HEAT_COSTS[above] - HEAT_COSTS[above - 1]);
+        self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
+    }
+
+    /// The colour of a name that is written in the colour of its curve.
+    pub fn name_of(&self, curve: Color32) -> Color32 {
+        self.towards_text(curve, 0.3)
+    }
+
     /// Text that stands on the accent colour.
     pub fn on_accent(&self) -> Color32 {
         if self.is_dark { self.background } else { self.panel }
@@ -162,11 +211,11 @@ impl Palette {
             code_bg_color: self.raised,
             warn_fg_color: self.warning,
             error_fg_color: self.nominal,
-            window_corner_radius: CornerRadius::same(6),
+            window_corner_radius: CornerRadius::same(8),
             window_shadow: shadow,
             window_fill: if self.is_dark { self.raised } else { self.panel },
             window_stroke: Stroke::new(1.0, self.line),
-            menu_corner_radius: CornerRadius::same(5),
+            menu_corner_radius: CornerRadius::same(6),
             panel_fill: self.panel,
             popup_shadow: shadow,
             indent_has_left_vline: false,
@@ -181,7 +230,7 @@ impl Palette {
             bg_fill,
             weak_bg_fill,
             bg_stroke: Stroke::new(1.0, outline),
-            corner_radius: CornerRadius::same(4),
+            corner_radius: CornerRadius::same(6),
             fg_stroke: Stroke::new(1.0, text),
             expansion: 0.0,
         };
@@ -202,16 +251,16 @@ impl Palette {
             (TextStyle::Small, FontId::new(SMALL_SIZE, FontFamily::Proportional)),
             (TextStyle::Body, FontId::new(BODY_SIZE, FontFamily::Proportional)),
             (TextStyle::Button, FontId::new(BODY_SIZE, FontFamily::Proportional)),
-            (TextStyle::Heading, FontId::new(15.0, FontFamily::Proportional)),
-            (TextStyle::Monospace, FontId::new(12.0, FontFamily::Monospace)),
+            (TextStyle::Heading, medium(TITLE_SIZE)),
+            (TextStyle::Monospace, FontId::new(SMALL_SIZE, FontFamily::Monospace)),
         ]
         .into();
         let spacing = &mut style.spacing;
-        spacing.item_spacing = vec2(6.0, 4.0);
-        spacing.button_padding = vec2(7.0, 2.0);
-        spacing.interact_size = vec2(28.0, 20.0);
-        spacing.window_margin = Margin::same(8);
-        spacing.menu_margin = Margin::same(5);
+        spacing.item_spacing = vec2(8.0, 4.0);
+        spacing.button_padding = vec2(8.0, 3.0);
+        spacing.interact_size = vec2(28.0, 24.0);
+        spacing.window_margin = Margin::same(12);
+        spacing.menu_margin = Margin::same(4);
         spacing.slider_rail_height = 4.0;
         spacing.icon_width = 15.0;
         spacing.icon_width_inner = 9.0;
@@ -221,15 +270,24 @@ impl Palette {
     }
 }
 
-/// egui's own fonts, where text in the proportional font finds arrows, dots and stars in the monospaced one.
+/// The two cuts of the typeface, each followed by egui's own fonts, in which other scripts and rarer signs are found.
 pub fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let monospaced = fonts.families.get(&FontFamily::Monospace).cloned().unwrap_or_default();
-    let proportional = fonts.families.entry(FontFamily::Proportional).or_default();
-    for name in monospaced {
-        if !proportional.contains(&name) {
-            proportional.push(name);
+    let others = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
+    let cuts = [
+        ("Inter", include_bytes!("../../assets/fonts/Inter-Regular.ttf").as_slice(), FontFamily::Proportional),
+        ("Inter Medium", include_bytes!("../../assets/fonts/Inter-Medium.ttf"), FontFamily::Name(MEDIUM.into())),
+    ];
+    for (name, bytes, family) in cuts {
+        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+        let mut names = vec![name.to_owned()];
+        for other in others.iter().chain(&monospaced) {
+            if !names.contains(other) {
+                names.push(other.clone());
+            }
         }
+        fonts.families.insert(family, names);
     }
     fonts
 }
@@ -263,7 +321,8 @@ mod tests {
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {
         for palette in [Palette::dark(), Palette::light()] {
-            for surface in [palette.background, palette.panel, palette.raised, palette.selected] {
+            let Palette { background, panel, raised, selected, warning_ground, good_ground, .. } = palette;
+            for surface in [background, panel, raised, selected, warning_ground, good_ground] {
                 assert!(contrast(palette.text, surface) > 6.0, "{palette:?}");
                 for text in [palette.dim_text, palette.warning, palette.good] {
                     assert!(contrast(text, surface) >= OF_TEXT, "{text:?} on {surface:?} of {palette:?}");
@@ -290,13 +349,50 @@ mod tests {
     }
 
     #[test]
+    fn the_names_of_curves_are_readable_beside_their_plots() {
+        for theme in [Palette::dark(), Palette::light()] {
+            let curves = [theme.nominal, theme.perturbed, theme.identified, theme.corrected, theme.rejected];
+            for name in curves.map(|color| theme.name_of(color)) {
+                assert!(contrast(name, theme.background) >= OF_TEXT, "{name:?} of {theme:?}");
+            }
+            assert!(contrast(theme.quiet_text, theme.panel) >= OF_TEXT, "{theme:?}");
+        }
+    }
+
+    #[test]
+    fn a_greater_cost_stands_out_more_from_the_ground() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let of = |cost| contrast(palette.heat_of(cost), palette.panel);
+            let steps = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
+            assert!(steps.windows(2).all(|pair| of(pair[0]) < of(pair[1])), "{palette:?}");
+            assert_eq!(palette.heat_of(1e9), palette.heat[4]);
+        }
+    }
+
+    #[test]
+    fn figures_are_of_equal_width_in_both_cuts() {
+        let ctx = Context::default();
+        apply(&ctx);
+        let output = ctx.run_ui(egui::RawInput::default(), |ui| {
+            for font in [FontId::proportional(BODY_SIZE), medium(BODY_SIZE)] {
+                let mut width = |figure| ui.fonts_mut(|fonts| fonts.glyph_width(&font, figure));
+                let widths: Vec<f32> = "0123456789−+±".chars().map(&mut width).collect();
+                assert!(widths.iter().all(|other| (other - widths[0]).abs() < 1e-3), "{widths:?}");
+            }
+        });
+        output.drop_without_applying_deltas();
+    }
+
+    #[test]
     fn the_symbols_of_the_window_have_glyphs() {
         let ctx = Context::default();
         apply(&ctx);
         let output = ctx.run_ui(egui::RawInput::default(), |ui| {
             let font = FontId::proportional(BODY_SIZE);
-            for symbol in "→−–·°ωτΔα…●○◆◇■▲".chars() {
-                assert!(ui.fonts_mut(|fonts| fonts.has_glyph(&font, symbol)), "{symbol}");
+            for symbol in "→−–·°ωτΔα…●○◆◇■▲★⚠✓±≈".chars() {
+                for font in [&font, &medium(BODY_SIZE)] {
+                    assert!(ui.fonts_mut(|fonts| fonts.has_glyph(font, symbol)), "{symbol}");
+                }
             }
         });
         output.drop_without_applying_deltas();

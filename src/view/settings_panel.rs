@@ -1,11 +1,16 @@
 //! The settings that change a result: a control for each row of the table of settings.
 
-use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo};
+use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo, pos2};
 
 use gdcm_core::correction::GainSource;
 use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
 
-use super::{Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, heading_ui, region_ui};
+use super::answer_panel::chevron;
+use super::palette::medium;
+use super::{
+    BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text, region_ui,
+    row_ui,
+};
 
 /// Largest value on a slider; more can be typed.
 const SLIDER_END: f64 = 1e3;
@@ -24,27 +29,55 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  Then the gains are found as before, on what is left.\n\
     5  The price is gain above the band: it is told in dB.";
 
-/// Every setting that is not shown in the view of what it is about.
+/// Every setting that is not shown in the view of what it is about: first those that are changed often, the others folded.
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    heading_ui(ui, palette, "Settings", "");
+    ui.spacing_mut().item_spacing.y = 4.0;
     region_ui(ui, Region::Settings, |ui| {
-        let (above, lines): (Vec<_>, Vec<_>) =
-            lines_of(state).into_iter().partition(|line| matches!(line[0].control.place, Place::Slider | Place::Top));
-        for line in above {
-            let mut panel = Panel { ui, state, palette, commands };
-            match line[0].control.place {
-                Place::Slider => panel.slider_ui(line[0]),
-                _ => drop(ui.horizontal_wrapped(|ui| Panel { ui, state, palette, commands }.line_ui(&line))),
-            }
+        let is_first = |line: &Vec<&'static Setting>| {
+            let place = line[0].control.place;
+            matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
+        };
+        let (first, advanced): (Vec<_>, Vec<_>) = lines_of(state).into_iter().partition(is_first);
+        let (sliders, first): (Vec<_>, Vec<_>) =
+            first.into_iter().partition(|line| line[0].control.place == Place::Slider);
+        for line in sliders {
+            Panel { ui, state, palette, commands }.slider_ui(line[0]);
         }
-        Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
-            for line in lines {
-                Panel { ui, state, palette, commands }.caption_ui(line[0]);
-                ui.horizontal(|ui| Panel { ui, state, palette, commands }.controls_ui(&line));
-                ui.end_row();
-                Panel { ui, state, palette, commands }.note_ui(line[0]);
-            }
-        });
+        for line in first {
+            ui.horizontal_wrapped(|ui| Panel { ui, state, palette, commands }.line_ui(&line));
+        }
+        ui.add_space(8.0);
+        advanced_head_ui(ui, state.display.advanced_open, palette, commands);
+        if state.display.advanced_open {
+            lines_ui(ui, state, advanced, palette, commands);
+        }
+    });
+}
+
+/// The line that folds and unfolds the settings that are seldom changed.
+fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let (row, response) = row_ui(ui, palette, false, false, "Advanced settings");
+    chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
+    painted_text(ui, row, 16.0, "Advanced", medium(BODY_SIZE), palette.text);
+    if named_switch(response, Role::Button, is_open, "Advanced settings").clicked() {
+        commands.push(Command::ShowAdvanced(!is_open));
+    }
+}
+
+fn lines_ui(
+    ui: &mut Ui,
+    state: &State,
+    lines: Vec<Vec<&'static Setting>>,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
+        for line in lines {
+            Panel { ui, state, palette, commands }.caption_ui(line[0]);
+            ui.horizontal(|ui| Panel { ui, state, palette, commands }.controls_ui(&line));
+            ui.end_row();
+            Panel { ui, state, palette, commands }.note_ui(line[0]);
+        }
     });
 }
 

@@ -90,6 +90,10 @@ impl Forms {
 pub struct State {
     /// The study: what is saved.
     pub study: Study,
+    /// Whether the dataset is the embedded example.
+    pub is_example: bool,
+    /// Whether the start page stands in the place of everything else.
+    pub on_start_page: bool,
     /// The dataset that what is shown is of.
     followed: Arc<Dataset>,
     /// What undo goes back over.
@@ -133,6 +137,8 @@ impl State {
         Self {
             followed: Arc::clone(&study.dataset),
             study,
+            is_example: false,
+            on_start_page: false,
             history: History::default(),
             study_name,
             unsaved: false,

@@ -2,26 +2,33 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align2, CursorIcon, Rect, Response, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, CursorIcon, FontId, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
 
-use super::axes::{FrequencyUnit, caption_font, message_ui, use_frame_colors};
-use super::bode_pane::{BandChange, Emphasis, band_handles_ui, pane_ui};
+use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
+use super::bode_pane::{BandChange, Emphasis, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui};
 use super::bode_view::BodeView;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
-use super::legend::{self, Chip, chips_ui};
+use super::legend::{Chip, ChipEvent, Chips, role_chips};
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
-use super::readout::{Readout, curve_tooltip_ui, readout_box_ui};
+use super::readout::{Readout, STRIP_HEIGHT, curve_tooltip_ui, readout_strip_ui};
 use super::rule::{BodeBand, ReferenceLine};
-use crate::view::palette::Palette;
+use crate::view::controls::{elided, painted_text};
+use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Part of the height that the magnitude plot gets.
-const MAGNITUDE_PART: f32 = 0.55;
-/// Space around and between the plots \[pt\]: tick labels at the ends of an axis stand out over its frame.
-const EDGE: f32 = 8.0;
+const MAGNITUDE_PART: f32 = 0.52;
+/// Height of the line over a pane \[pt\].
+const HEADING: f32 = 20.0;
+/// Space above and below the read-out \[pt\].
+const GAP: f32 = 6.0;
+/// Space at the right for the unit of the frequencies, and for the names of curves too \[pt\].
+const MARGINS: [f32; 2] = [36.0, 78.0];
+/// In a lower plot, the values have no room between the panes \[pt\].
+const LEAST_WITH_STRIP: f32 = 300.0;
 /// Below this, there is no room for two plots \[pt\].
 const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
 
@@ -48,6 +55,16 @@ pub struct BodeScene<'a> {
     pub pinned: &'a [f64],
     /// What every role has at the cursor.
     pub readout: Option<&'a Readout>,
+    /// What stands at the right over each pane: what the correction did there, and whether that is to be warned of.
+    pub notes: [Option<&'a PaneNote>; 2],
+    /// What a correction is still to give: the phase between the corrected and the identified model, within the band.
+    pub missing: Option<&'a BodeBand>,
+    /// Whether bands are drawn; none where there are no bands.
+    pub shows_bands: Option<bool>,
+    /// The role that is drawn above all others.
+    pub raised: Option<Role>,
+    /// Whether the ends of the heavy curves are named in the margin.
+    pub names_curves: bool,
     /// Roles whose curves are not drawn.
     pub hidden_roles: &'a BTreeSet<Role>,
     /// What holds for the plot now.
@@ -60,6 +77,17 @@ pub struct BodeScene<'a> {
     pub stale: bool,
     /// What to say where there is nothing to draw.
     pub message: Option<&'a str>,
+}
+
+/// What stands at the right over a pane.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PaneNote {
+    /// "J 13.4 → 0.3".
+    pub cost: String,
+    /// "matched", "lags by 66 ms, 46° at 12 rad/s".
+    pub verdict: String,
+    /// Whether the verdict is a warning.
+    pub warns: bool,
 }
 
 static NO_ROLES: BTreeSet<Role> = BTreeSet::new();
@@ -78,6 +106,11 @@ impl<'a> BodeScene<'a> {
             cursor: None,
             pinned: &[],
             readout: None,
+            notes: [None; 2],
+            missing: None,
+            shows_bands: None,
+            raised: None,
+            names_curves: false,
             hidden_roles: &NO_ROLES,
             chips: &[],
             band,
@@ -108,8 +141,14 @@ pub enum BodeEvent {
     },
     /// The band was let go after dragging.
     BandReleased,
-    /// The legend's switch of a role was clicked.
+    /// The chip of a role was clicked.
     RoleToggled(Role),
+    /// It was clicked with Alt held: this role alone.
+    RoleAlone(Role),
+    /// It was clicked with Shift held: this role in front.
+    RoleRaised(Role),
+    /// The chip of the bands was clicked.
+    BandsShown(bool),
     /// The model of a curve is to be rejected, for a reason.
     RejectedBecause(CurveId, String),
     /// Something was chosen from a curve's menu.
@@ -146,11 +185,29 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
     view.fit_if_requested(&visible);
     ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
-        panes_ui(ui, rect, &visible, view, palette, &mut events);
-        captions_ui(ui, &visible, scene.curves, view, palette, &mut events);
+        let height = chips_ui(ui, rect, scene, palette, &mut events);
+        let places = Places::of(rect.with_min_y(rect.top() + height), scene);
+        panes_ui(ui, &places, &visible, view, palette, &mut events);
+        headings_ui(ui, &places, &visible, view, palette);
     });
     ui.advance_cursor_after_rect(rect);
     events
+}
+
+/// The switches of all curves, hidden ones too, and what holds for the plot; gives the height that they take.
+fn chips_ui(ui: &Ui, rect: Rect, scene: &BodeScene<'_>, palette: &Palette, events: &mut Vec<BodeEvent>) -> f32 {
+    let roles = role_chips(scene.curves, scene.hidden_roles, palette);
+    let plot = scene.quantity.label_suffix();
+    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
+    let (height, event) = chips.ui(ui, rect, palette);
+    events.extend(event.map(|event| match event {
+        ChipEvent::Toggled(role) => BodeEvent::RoleToggled(role),
+        ChipEvent::Alone(role) => BodeEvent::RoleAlone(role),
+        ChipEvent::Raised(role) => BodeEvent::RoleRaised(role),
+        ChipEvent::Bands(shown) => BodeEvent::BandsShown(shown),
+        ChipEvent::Clicked(index) => BodeEvent::ChipClicked(index),
+    }));
+    height
 }
 
 fn has_data(curves: &[BodeCurve]) -> bool {
@@ -160,7 +217,7 @@ fn has_data(curves: &[BodeCurve]) -> bool {
 
 fn panes_ui(
     ui: &mut Ui,
-    rect: Rect,
+    places: &Places,
     scene: &BodeScene<'_>,
     view: &mut BodeView,
     palette: &Palette,
@@ -173,7 +230,7 @@ fn panes_ui(
     view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
     let cursor = pointing.map(|pointing| pointing.log_omega).or(scene.cursor.map(f64::log10));
     let emphasis = Emphasis { curve: meant, cursor };
-    for (pane, rect) in pane_rects(rect) {
+    for (pane, rect) in [(Pane::Magnitude, places.panes[0]), (Pane::Phase, places.panes[1])] {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
         drag_band(ui, pane, scene, view, palette, events);
@@ -203,13 +260,27 @@ fn ask_for_menu(response: &Response, scene: &BodeScene<'_>, pointing: Option<Poi
     }
 }
 
-/// Where the panes go: enough space around them for the tick labels at their edges.
-fn pane_rects(rect: Rect) -> [(Pane, Rect); 2] {
-    let inner = Rect::from_min_max(rect.min + vec2(0.0, EDGE), rect.max - vec2(1.5 * EDGE, 0.0));
-    let split = inner.top() + MAGNITUDE_PART * inner.height();
-    let magnitude = Rect::from_min_max(inner.min, pos2(inner.right(), split - 0.5 * EDGE));
-    let phase = Rect::from_min_max(pos2(inner.left(), split + 0.5 * EDGE), inner.max);
-    [(Pane::Magnitude, magnitude), (Pane::Phase, phase)]
+/// Where headings, panes and the read-out go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Places {
+    headings: [Rect; 2],
+    panes: [Rect; 2],
+    strip: Option<Rect>,
+}
+
+impl Places {
+    fn of(area: Rect, scene: &BodeScene<'_>) -> Self {
+        let inner = area.with_max_x(area.right() - MARGINS[usize::from(scene.names_curves)]);
+        // Its room is kept while there is nothing to read out: nothing moves when the pointer comes.
+        let has_strip = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
+        let between = if has_strip { STRIP_HEIGHT + 2.0 * GAP } else { GAP };
+        let plots = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
+        let magnitude = Rect::from_min_size(pos2(inner.left(), inner.top() + HEADING), vec2(inner.width(), MAGNITUDE_PART * plots));
+        let strip = Rect::from_min_max(pos2(inner.left() + VALUE_AXIS_WIDTH, magnitude.bottom() + GAP), pos2(inner.right(), magnitude.bottom() + GAP + STRIP_HEIGHT));
+        let phase = inner.with_min_y(magnitude.bottom() + between + HEADING);
+        let heading = |pane: Rect| Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top());
+        Self { headings: [heading(magnitude), heading(phase)], panes: [magnitude, phase], strip: has_strip.then_some(strip) }
+    }
 }
 
 /// Where the pointer is in the plots, as they were drawn in the last frame.
@@ -224,9 +295,6 @@ impl Pointing {
     fn find(ui: &Ui, scene: &BodeScene<'_>, view: &BodeView) -> Option<Self> {
         let pointer = ui.input(|input| input.pointer.hover_pos())?;
         let is_inside = |rect: Rect| rect.contains(pointer) && ui.rect_contains_pointer(rect);
-        if view.legend.rect.is_some_and(is_inside) {
-            return None;
-        }
         let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
         [Pane::Magnitude, Pane::Phase].into_iter().find_map(|pane| {
             let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
@@ -291,38 +359,86 @@ fn set_cursor_icon(response: Response, hit: Option<Hit>) {
     response.on_hover_cursor(icon);
 }
 
-/// What lies over the curves: the legend of all of them, hidden ones too, chips, the read-out, and whether newer curves are on their
-/// way.
-fn captions_ui(
-    ui: &Ui,
-    scene: &BodeScene<'_>,
-    all: &[BodeCurve],
-    view: &mut BodeView,
-    palette: &Palette,
-    events: &mut Vec<BodeEvent>,
-) {
-    let Some(transform) = view.magnitude_transform().copied() else {
-        return;
-    };
-    let frame = *transform.frame();
-    let plot = scene.quantity.label_suffix();
-    let entries = legend::entries(all, scene.hidden_roles, palette);
-    let points = || scene.curves.iter().flat_map(|curve| curve.points(Pane::Magnitude));
-    let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
-    let covered = |place: Rect| points().filter(|point| place.contains(position(*point))).count();
-    let toggled = legend::legend_ui(ui, (frame, plot), &entries, &mut view.legend, covered, palette);
-    events.extend(toggled.map(BodeEvent::RoleToggled));
-    if let Some(readout) = scene.readout {
-        let labelled = !scene.rules.is_empty();
-        readout_box_ui(ui, frame, readout, (view.legend.rect, labelled), palette);
+/// What stands around the panes: what each shows, what the correction did there, the values at the cursor, the names of the heavy
+/// curves at their ends, and whether newer curves are on their way.
+fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
+    let small = FontId::proportional(SMALL_SIZE);
+    for (index, pane) in [Pane::Magnitude, Pane::Phase].into_iter().enumerate() {
+        let line = places.headings[index];
+        let label = scene.quantity.axis_label(pane);
+        let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
+        let name = painted_text(ui, line, 0.0, name, medium(BODY_SIZE), palette.text);
+        let unit = unit.trim_end_matches(']');
+        let unit = painted_text(ui, line, name.right() - line.left() + 4.0, unit, FontId::proportional(BODY_SIZE), palette.dim_text);
+        if let Some(note) = scene.notes[index] {
+            let color = if note.warns { palette.warning } else { palette.dim_text };
+            let verdict = painted_text(ui, line, -0.01, &note.verdict, FontId::proportional(BODY_SIZE), color);
+            let rest = line.with_max_x(verdict.left() - 12.0);
+            let shown = elided(ui, &note.cost, rest.right() - unit.right() - 8.0, BODY_SIZE);
+            painted_text(ui, rest, -0.01, &shown, FontId::proportional(BODY_SIZE), palette.dim_text);
+        } else if scene.stale && index == 0 {
+            painted_text(ui, line, -0.01, scene.message.unwrap_or("updating…"), small.clone(), palette.dim_text);
+        }
+        if scene.names_curves {
+            names_ui(ui, pane, scene, view, palette);
+        }
     }
-    events.extend(chips_ui(ui, (frame, plot), scene.chips, palette).map(BodeEvent::ChipClicked));
-    if scene.stale {
-        // The other corner below where the legend stands in this one.
-        let taken = view.legend.corner.is_some_and(|(corner, _)| corner == Align2::LEFT_BOTTOM);
-        let corner = if taken { Align2::RIGHT_BOTTOM } else { Align2::LEFT_BOTTOM };
-        let at = corner.pos_in_rect(&frame.shrink2(vec2(8.0, 6.0)));
-        let text = scene.message.unwrap_or("updating…");
-        ui.painter().with_clip_rect(frame).text(at, corner, text, caption_font(), palette.dim_text);
+    if let Some(frame) = view.phase_transform().map(|transform| *transform.frame()) {
+        let at = pos2(frame.right() + 14.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
+        let unit = scene.unit.symbol();
+        ui.painter().text(at, Align2::LEFT_CENTER, unit, caption_font(), palette.dim_text);
+    }
+    if let (Some(strip), Some(readout)) = (places.strip, scene.readout) {
+        readout_strip_ui(ui, strip, readout, palette);
+    }
+}
+
+/// The roles that are named where they end.
+const NAMED: [Role; 4] = [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Nominal];
+/// Least distance between two names \[pt\].
+const NAME_GAP: f32 = 14.0;
+
+/// The names of the heavy curves at their ends, as far as there is room for them.
+fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
+    let Some(transform) = view.transform(pane) else { return };
+    let frame = *transform.frame();
+    let last = view.omega_range().1;
+    let end = |role: Role| {
+        let curve = scene.curves.iter().find(|curve| curve.role == role)?;
+        let omega = curve.omega.last()?.min(last);
+        let at = transform.position_from_point(&PlotPoint::new(omega.log10(), curve.value_at(pane, omega)?));
+        Some((role, at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0)))
+    };
+    let mut ends: Vec<(Role, f32)> = NAMED.into_iter().filter_map(end).collect();
+    ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+    spread(&mut ends, frame.bottom() - 5.0);
+    for (role, y) in ends {
+        let color = palette.name_of(palette.role_style(role, false).color.to_opaque());
+        ui.painter().text(pos2(frame.right() + 6.0, y), Align2::LEFT_CENTER, role.name(), caption_font(), color);
+    }
+}
+
+/// Moves places down until no two are closer than a name is high, then up again where they leave the plot.
+fn spread(ends: &mut [(Role, f32)], bottom: f32) {
+    for index in 1..ends.len() {
+        ends[index].1 = ends[index].1.max(ends[index - 1].1 + NAME_GAP);
+    }
+    let mut limit = bottom;
+    for (_, y) in ends.iter_mut().rev() {
+        *y = y.min(limit);
+        limit = *y - NAME_GAP;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_keep_clear_of_one_another_and_within_the_plot() {
+        let mut ends = vec![(Role::Nominal, 80.0), (Role::Corrected, 95.0), (Role::IdentifiedRepresentative, 96.0)];
+        spread(&mut ends, 100.0);
+        let places: Vec<f32> = ends.iter().map(|(_, y)| *y).collect();
+        assert_eq!(places, [72.0, 86.0, 100.0]);
     }
 }

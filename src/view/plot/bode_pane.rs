@@ -7,7 +7,7 @@ use egui::{
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{
-    FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
+    FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
 };
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
@@ -22,7 +22,7 @@ use super::rule::{draw_band, rules_ui, strips_ui};
 use crate::view::palette::Palette;
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
-const VALUE_AXIS_WIDTH: f32 = 52.0;
+pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
 /// How far from a curve its drawn line may be \[pt\].
 const TOLERANCE: f64 = 0.1;
 
@@ -60,7 +60,8 @@ pub(super) fn pane_ui(
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
-            scene.bands.iter().for_each(|band| draw_band(plot, band, pane, &bounds, palette));
+            let bands = scene.bands.iter().filter(|_| scene.shows_bands != Some(false));
+            bands.chain(scene.missing).for_each(|band| draw_band(plot, band, pane, &bounds, palette));
             let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
             draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);
@@ -101,19 +102,20 @@ fn drag(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView, palette: 
 
 fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette: &Palette) -> egui_plot::Plot<'a> {
     let unit = scene.unit;
-    let (frequency_label, frequency_height) = match pane {
-        Pane::Magnitude => (String::new(), TICKS_HEIGHT),
-        Pane::Phase => (unit.axis_label(), LABELLED_HEIGHT),
-    };
     let frequencies = Ticks::Frequency(unit);
-    let (values, value_label) = (scene.quantity.unit(pane).ticks(), scene.quantity.axis_label(pane));
+    // One axis of frequencies, below both panes.
+    let below = match pane {
+        Pane::Magnitude => Vec::new(),
+        Pane::Phase => vec![axis_hints(Axis::X, "", TICKS_HEIGHT, palette, frequencies)],
+    };
+    let values = scene.quantity.unit(pane).ticks();
     quiet_plot(id, palette)
         .width(rect.width())
         .height(rect.height())
         .x_grid_spacer(frequencies.spacer())
         .y_grid_spacer(values.spacer())
-        .custom_x_axes(vec![axis_hints(Axis::X, &frequency_label, frequency_height, palette, frequencies)])
-        .custom_y_axes(vec![axis_hints(Axis::Y, &value_label, VALUE_AXIS_WIDTH, palette, values)])
+        .custom_x_axes(below)
+        .custom_y_axes(vec![axis_hints(Axis::Y, "", VALUE_AXIS_WIDTH, palette, values)])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
@@ -146,7 +148,8 @@ fn draw_curves<'a>(
         plot.add(DrawnItem::new(move |_, shapes| shapes.push(image.shape(strength))));
         curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || is_emphasized(curve));
     }
-    curves.sort_by_key(|(_, curve)| (is_emphasized(curve), curve.role.layer(curve.rejected)));
+    let is_raised = |curve: &BodeCurve| scene.raised == Some(curve.role.shown(curve.rejected));
+    curves.sort_by_key(|(_, curve)| (is_emphasized(curve), is_raised(curve), curve.role.layer(curve.rejected)));
     for (index, curve) in curves {
         let mut look = palette.role_style(curve.role, curve.rejected);
         if is_emphasized(curve) {

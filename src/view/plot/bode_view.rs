@@ -12,7 +12,6 @@ use gdcm_files::figure::fitted_values;
 use super::curve::{CurveId, Pane};
 use super::curve_menu::MenuSubject;
 use super::drawn_curves::DrawnCurves;
-use super::legend::LegendState;
 use super::navigation::ViewedRange;
 use super::quantity::ValueUnit;
 
@@ -32,7 +31,6 @@ pub struct BodeView {
     log_omega: ViewedRange,
     /// Magnitudes \[dB\] and phases \[deg\].
     values: [ViewedRange; 2],
-    pub(super) legend: LegendState,
     pub(super) hovered: Option<CurveId>,
     /// The frequency under the pointer \[rad/s\].
     pub(super) pointed_omega: Option<f64>,
@@ -67,7 +65,6 @@ impl Default for BodeView {
                 ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
                 ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
             ],
-            legend: LegendState { is_open: true, corner: None, rect: None },
             hovered: None,
             pointed_omega: None,
             last_clicked: None,
@@ -110,11 +107,6 @@ impl BodeView {
         let view = self.log_omega.range();
         let reaches_out = min.log10() < view.min - ROUNDING || max.log10() > view.max + ROUNDING;
         self.must_fit_frequencies |= reaches_out && !self.log_omega.is_chosen();
-    }
-
-    /// Shows or hides the legend.
-    pub fn set_legend_open(&mut self, open: bool) {
-        self.legend.is_open = open;
     }
 
     /// The curve under the pointer.
@@ -264,8 +256,6 @@ impl BodeView {
             self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
-            // The legend stays where it is while zooming, but makes room for new curves.
-            self.legend.corner = None;
             for pane in [Pane::Magnitude, Pane::Phase] {
                 if let Some(values) = fitted_values(scene.curves, pane, scene.band) {
                     self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));

@@ -1,26 +1,27 @@
-//! The legend of a Bode plot: one switch for each role that is present.
+//! Chips above a plot in place of a legend: one switch for each role that is present, and what holds for the plot now.
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
-use egui::{Align2, CursorIcon, Galley, Painter, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
+use egui::{Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
-use super::axes::caption_font;
 use super::curve::BodeCurve;
 use super::curve_style::{CurveStyle, Role};
-use crate::view::palette::Palette;
+use crate::view::palette::{Palette, SMALL_SIZE};
 
-const ROW_HEIGHT: f32 = 16.5;
-const SAMPLE_WIDTH: f32 = 26.0;
-const SAMPLE_GAP: f32 = 8.0;
-const PADDING: Vec2 = vec2(8.0, 6.0);
-const MARGIN: f32 = 9.0;
+/// Height of a chip, and of a line of them \[pt\].
+const HEIGHTS: [f32; 2] = [22.0, 27.0];
+/// Between two chips \[pt\].
+const GAP: f32 = 5.0;
+/// Length of a sample of a curve \[pt\].
+const SAMPLE: f32 = 18.0;
+/// Space at both ends of a chip \[pt\].
+const PAD: f32 = 8.0;
 /// Longest name of a single model shown beside its role, in characters.
 const NAME_LENGTH: usize = 22;
 
-/// One line of the legend: a switch.
+/// A chip that switches curves.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct LegendEntry {
+pub(super) struct RoleChip {
     pub(super) role: Role,
     pub(super) text: String,
     pub(super) look: CurveStyle,
@@ -28,159 +29,30 @@ pub(super) struct LegendEntry {
     pub(super) shown: bool,
 }
 
-/// One line for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
-pub(super) fn entries(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette: &Palette) -> Vec<LegendEntry> {
+/// One chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
+pub(super) fn role_chips(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette: &Palette) -> Vec<RoleChip> {
     let of_role = |role: Role| {
         let members: Vec<&BodeCurve> = curves.iter().filter(|curve| curve.role.shown(curve.rejected) == role).collect();
         let first = members.first()?;
-        // One line for kept and rejected nominal models: dotted only where none is kept.
+        // One chip for kept and rejected nominal models: dotted only where none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
         let look = palette.role_style(first.role, rejected);
-        Some(LegendEntry { role, text: text(role, &members, rejected), look, shown: !hidden.contains(&role) })
+        Some(RoleChip { role, text: text(role, &members), look, shown: !hidden.contains(&role) })
     };
     Role::ALL.into_iter().filter_map(of_role).collect()
 }
 
-fn text(role: Role, members: &[&BodeCurve], rejected: bool) -> String {
+fn text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
     match (role, members) {
-        (Role::Nominal, _) if rejected => format!("{name} (rejected)"),
         (Role::Representative, [only]) if !only.label.is_empty() => {
             let short: String = only.label.chars().take(NAME_LENGTH).collect();
             let ellipsis = if short.len() < only.label.len() { "…" } else { "" };
             format!("{name} {short}{ellipsis}")
         }
+        (Role::Identified, _) => "others".to_owned(),
         _ => name.to_owned(),
     }
-}
-
-/// What the view remembers of a legend.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct LegendState {
-    pub(super) is_open: bool,
-    /// The corner of the frame it stands in, and the size of the frame it was chosen for.
-    pub(super) corner: Option<(Align2, Vec2)>,
-    /// Where it was drawn.
-    pub(super) rect: Option<Rect>,
-}
-
-/// Draws the legend into a corner of `frame`, the one with the fewest of the points that `covered` counts in a place. `plot` tells
-/// it from the legends of other plots. A click on its head folds and unfolds it; gives the role
-/// whose switch was clicked.
-pub(super) fn legend_ui(
-    ui: &Ui,
-    (frame, plot): (Rect, &str),
-    entries: &[LegendEntry],
-    state: &mut LegendState,
-    covered: impl Fn(Rect) -> usize,
-    palette: &Palette,
-) -> Option<Role> {
-    let painter = ui.painter().with_clip_rect(frame);
-    let rows = Rows::new(&painter, entries, palette);
-    let has_room = rows.size.x < 0.5 * frame.width() && rows.size.y < 0.75 * frame.height();
-    let is_unfolded = state.is_open && has_room;
-    let head = painter.layout_no_wrap("Legend".to_owned(), caption_font(), palette.dim_text);
-    let size = if is_unfolded { rows.size } else { head.size() + PADDING };
-    let room = frame.shrink(MARGIN);
-    if entries.is_empty() || size.x > room.width() || size.y > room.height() {
-        state.rect = None;
-        return None;
-    }
-    let chosen = state.corner.filter(|(_, size)| *size == room.size());
-    let (corner, _) = chosen.unwrap_or_else(|| (emptiest_corner(room, rows.size, covered), room.size()));
-    let rect = corner.align_size_within_rect(size, room);
-    state.corner = Some((corner, room.size()));
-    state.rect = Some(rect);
-    let fill = palette.raised.gamma_multiply(0.93);
-    ui.painter().rect(rect, 4.0, fill, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-    let head_rect = if is_unfolded { rect.with_max_y(rect.top() + PADDING.y + ROW_HEIGHT) } else { rect };
-    if head_ui(ui, (head_rect, plot), is_unfolded, palette) && has_room {
-        state.is_open = !state.is_open;
-    }
-    painter.galley(rect.min + 0.5 * PADDING, head, palette.dim_text);
-    if is_unfolded { rows.ui(ui, (rect, plot), entries, palette) } else { None }
-}
-
-/// The head of the legend, which folds and unfolds it; gives whether it was clicked.
-fn head_ui(ui: &Ui, (rect, plot): (Rect, &str), is_unfolded: bool, palette: &Palette) -> bool {
-    let response = ui.interact(rect, ui.scope_id().with("legend"), Sense::click());
-    let name = if is_unfolded { "Fold the legend" } else { "Unfold the legend" };
-    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_unfolded, format!("{name}{plot}")));
-    if response.hovered() || response.has_focus() {
-        ui.painter().rect_stroke(rect, 4.0, Stroke::new(1.0, palette.accent), StrokeKind::Inside);
-    }
-    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(name).clicked()
-}
-
-/// The lines of the legend, laid out.
-struct Rows {
-    rows: Vec<(CurveStyle, Arc<Galley>)>,
-    /// Size of the whole, with its head and the space around.
-    size: Vec2,
-}
-
-impl Rows {
-    fn new(painter: &Painter, entries: &[LegendEntry], palette: &Palette) -> Self {
-        let layout = |entry: &LegendEntry| {
-            let color = if entry.shown { palette.text } else { palette.dim_text };
-            (entry.look, painter.layout_no_wrap(entry.text.clone(), caption_font(), color))
-        };
-        let rows: Vec<_> = entries.iter().map(layout).collect();
-        let text_width = rows.iter().map(|(_, galley)| galley.size().x).fold(0.0, f32::max);
-        let inner = vec2(SAMPLE_WIDTH + SAMPLE_GAP + text_width, ROW_HEIGHT * (rows.len() + 1) as f32);
-        Self { rows, size: inner + 2.0 * PADDING }
-    }
-
-    /// One switch for each role.
-    fn ui(self, ui: &Ui, (rect, plot): (Rect, &str), entries: &[LegendEntry], palette: &Palette) -> Option<Role> {
-        let mut answer = None;
-        let painter = ui.painter().with_clip_rect(rect);
-        for (row, ((look, galley), entry)) in self.rows.into_iter().zip(entries).enumerate() {
-            let top = rect.top() + PADDING.y + ROW_HEIGHT * (row + 1) as f32;
-            let place = Rect::from_x_y_ranges(rect.shrink(2.0).x_range(), top..=top + ROW_HEIGHT);
-            let response = ui.interact(place, ui.scope_id().with(("legend", entry.role)), Sense::click());
-            let name = format!("Show {}{plot}", entry.role.name());
-            response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, entry.shown, &name));
-            if response.hovered() || response.has_focus() {
-                painter.rect_filled(place, 3.0, palette.selected.gamma_multiply(0.6));
-            }
-            paint_row(&painter, place, entry, look, galley, palette);
-            let hint = if entry.shown { "Click: hide these curves" } else { "Click: show these curves" };
-            if response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(hint).clicked() {
-                answer = Some(entry.role);
-            }
-        }
-        answer
-    }
-}
-
-fn paint_row(
-    painter: &Painter,
-    place: Rect,
-    entry: &LegendEntry,
-    look: CurveStyle,
-    galley: Arc<Galley>,
-    palette: &Palette,
-) {
-    let (left, middle) = (place.left() + PADDING.x - 2.0, place.center().y);
-    if entry.shown {
-        let mut shapes = Vec::new();
-        look.add_shapes(vec![pos2(left, middle), pos2(left + SAMPLE_WIDTH, middle)], &mut shapes);
-        painter.extend(shapes);
-    }
-    let text = pos2(left + SAMPLE_WIDTH + SAMPLE_GAP, middle - 0.5 * galley.size().y);
-    let end = text.x + galley.size().x;
-    painter.galley(text, galley, palette.text);
-    if !entry.shown {
-        painter.hline(text.x..=end, middle, Stroke::new(1.0, palette.dim_text));
-    }
-}
-
-/// The corner of `room` where something of `size` covers least; of equal ones the earlier.
-fn emptiest_corner(room: Rect, size: Vec2, covered: impl Fn(Rect) -> usize) -> Align2 {
-    let corners = [Align2::RIGHT_TOP, Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM, Align2::LEFT_TOP];
-    let least = corners.into_iter().min_by_key(|corner| covered(corner.align_size_within_rect(size, room)));
-    least.unwrap_or(Align2::RIGHT_TOP)
 }
 
 /// What holds for a plot now, and what a click on it does.
@@ -192,26 +64,153 @@ pub struct Chip {
     pub hint: String,
 }
 
-/// Draws chips along the upper edge of `frame`, from left to right; gives the index of the one clicked. `plot` tells them from those
-/// of other plots.
-pub(super) fn chips_ui(ui: &Ui, (frame, plot): (Rect, &str), chips: &[Chip], palette: &Palette) -> Option<usize> {
-    let mut clicked = None;
-    let mut left = frame.left() + 8.0;
-    for (index, chip) in chips.iter().enumerate() {
-        let painter = ui.painter().with_clip_rect(frame);
-        let galley = painter.layout_no_wrap(chip.text.clone(), caption_font(), palette.text);
-        let size = galley.size() + vec2(14.0, 6.0);
-        let place = Align2::LEFT_TOP.anchor_size(pos2(left, frame.top() + 7.0), size);
-        left = place.right() + 5.0;
-        let response = ui.interact(place, ui.scope_id().with(("chip", index)), Sense::click());
-        response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, format!("{}{plot}", chip.text)));
-        let is_meant = response.hovered() || response.has_focus();
-        let outline = if is_meant { palette.accent } else { palette.line };
-        painter.rect(place, 0.5 * size.y, palette.selected, Stroke::new(1.0, outline), StrokeKind::Inside);
-        painter.galley(place.min + vec2(7.0, 3.0), galley, palette.text);
-        if response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(&chip.hint).clicked() {
-            clicked = Some(index);
+/// What was done with the chips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ChipEvent {
+    /// The curves of a role are to be hidden, or shown.
+    Toggled(Role),
+    /// Those of this role alone are to be shown.
+    Alone(Role),
+    /// They are to be drawn above all others.
+    Raised(Role),
+    /// The bands of the identified models are to be drawn, or not.
+    Bands(bool),
+    /// What holds for the plot is to end: its index.
+    Clicked(usize),
+}
+
+/// All chips of a plot.
+pub(super) struct Chips<'a> {
+    /// What tells them from those of other plots.
+    pub(super) plot: &'a str,
+    pub(super) roles: &'a [RoleChip],
+    /// Whether bands are drawn; none where there are no bands.
+    pub(super) bands: Option<bool>,
+    pub(super) states: &'a [Chip],
+}
+
+impl Chips<'_> {
+    /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
+    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<ChipEvent>) {
+        let mut row = Row { area, corner: area.min, event: None };
+        for chip in self.roles {
+            let name = format!("Show {}{}", chip.role.name(), self.plot);
+            let response = row.chip_ui(ui, (&chip.text, &name), Some((chip.look, chip.shown)), palette);
+            let hint = if chip.shown { "Click: hide" } else { "Click: show" };
+            let hint = format!("{hint} · Alt+click: alone · Shift+click: in front");
+            if response.on_hover_text(hint).clicked() {
+                let modifiers = ui.input(|input| input.modifiers);
+                row.event = Some(match (modifiers.alt, modifiers.shift) {
+                    (true, _) => ChipEvent::Alone(chip.role),
+                    (_, true) => ChipEvent::Raised(chip.role),
+                    _ => ChipEvent::Toggled(chip.role),
+                });
+            }
         }
+        if let Some(shown) = self.bands {
+            let style = CurveStyle { color: palette.identified.gamma_multiply(0.45), width: 7.0, ..BAND_SAMPLE };
+            let name = format!("Show the band of 95 %{}", self.plot);
+            let response = row.chip_ui(ui, ("band of 95 %", &name), Some((style, shown)), palette);
+            if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
+                row.event = Some(ChipEvent::Bands(!shown));
+            }
+        }
+        for (index, chip) in self.states.iter().enumerate() {
+            let name = format!("{}{}", chip.text, self.plot);
+            if row.chip_ui(ui, (&chip.text, &name), None, palette).on_hover_text(&chip.hint).clicked() {
+                row.event = Some(ChipEvent::Clicked(index));
+            }
+        }
+        let is_empty = self.roles.is_empty() && self.states.is_empty();
+        let height = if is_empty { 0.0 } else { row.corner.y - area.top() + HEIGHTS[1] };
+        (height, row.event)
     }
-    clicked
+}
+
+const BAND_SAMPLE: CurveStyle = CurveStyle {
+    color: Color32::TRANSPARENT,
+    width: 0.0,
+    dash: gdcm_files::figure::Dash::Solid,
+    length: 0.0,
+};
+
+/// Where the next chip goes.
+struct Row {
+    area: Rect,
+    corner: egui::Pos2,
+    event: Option<ChipEvent>,
+}
+
+impl Row {
+    /// A chip with the sample of a curve, pale and dashed where that is hidden; one of accent where it has none.
+    fn chip_ui(
+        &mut self,
+        ui: &Ui,
+        (text, name): (&str, &str),
+        sample: Option<(CurveStyle, bool)>,
+        palette: &Palette,
+    ) -> Response {
+        let is_shown = sample.is_none_or(|(_, shown)| shown);
+        let color = if is_shown { palette.text } else { palette.dim_text };
+        let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(SMALL_SIZE), color);
+        let before = if sample.is_some() { SAMPLE + 6.0 } else { 0.0 };
+        let size = vec2(galley.size().x + before + 2.0 * PAD, HEIGHTS[0]);
+        if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
+            self.corner = pos2(self.area.left(), self.corner.y + HEIGHTS[1]);
+        }
+        let place = Rect::from_min_size(self.corner, size);
+        self.corner.x = place.right() + GAP;
+        let response = ui.interact(place, ui.scope_id().with(("chip", name)), Sense::click());
+        match sample {
+            Some((_, shown)) => {
+                response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, shown, name));
+            }
+            None => response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name)),
+        }
+        let is_meant = response.hovered() || response.has_focus();
+        self.paint(ui, place, (sample, is_meant), palette);
+        let at = pos2(place.left() + PAD + before, place.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, color);
+        response.on_hover_cursor(CursorIcon::PointingHand)
+    }
+
+    fn paint(&self, ui: &Ui, place: Rect, (sample, is_meant): (Option<(CurveStyle, bool)>, bool), palette: &Palette) {
+        let radius = 0.5 * place.height();
+        let is_hidden = sample.is_some_and(|(_, shown)| !shown);
+        let line = Stroke::new(1.0, if is_meant { palette.accent } else { palette.line });
+        let fill = match sample {
+            _ if is_hidden => Color32::TRANSPARENT,
+            Some(_) => palette.panel,
+            None => palette.selected,
+        };
+        if is_hidden {
+            let mut outline = Vec::new();
+            let path = rounded(place.shrink(0.5), radius);
+            outline.extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
+            ui.painter().extend(outline);
+        } else {
+            ui.painter().rect(place, radius, fill, line, StrokeKind::Inside);
+        }
+        let Some((look, _)) = sample else { return };
+        let look = if is_hidden { CurveStyle { color: look.color.gamma_multiply(0.5), ..look } } else { look };
+        let (left, middle) = (place.left() + PAD, place.center().y);
+        let mut shapes = Vec::new();
+        look.add_shapes(vec![pos2(left, middle), pos2(left + SAMPLE, middle)], &mut shapes);
+        ui.painter().extend(shapes);
+    }
+}
+
+/// The outline of a rectangle whose ends are half circles, as one path.
+fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
+    let centers = [pos2(place.right() - radius, place.center().y), pos2(place.left() + radius, place.center().y)];
+    let quarter = std::f32::consts::FRAC_PI_2;
+    let turn = |center: egui::Pos2, from: f32| {
+        (0..=8).map(move |step| {
+            let angle = from + 2.0 * quarter * step as f32 / 8.0;
+            center + radius * vec2(angle.cos(), angle.sin())
+        })
+    };
+    let mut path: Vec<_> = turn(centers[0], -quarter).chain(turn(centers[1], quarter)).collect();
+    path.push(path[0]);
+    path
 }

@@ -76,6 +76,11 @@ impl BodeQuantity<'_> {
         self.words()[1]
     }
 
+    /// Whether it is of the condition shown, and not of others beside it or of a file.
+    pub(crate) fn is_of_condition(self) -> bool {
+        matches!(self, Self::Error { .. } | Self::Response { place: ResponsePlace::Condition, .. })
+    }
+
     /// What a pane shows: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
         format!("{pane:?}{}", self.words()[2])
@@ -87,41 +92,13 @@ impl BodeQuantity<'_> {
     }
 
     /// The unit that a pane is read in.
-    pub(super) fn unit(self, pane: Pane) -> ValueUnit {
+    pub(crate) fn unit(self, pane: Pane) -> ValueUnit {
         match (self, pane) {
             (Self::Response { magnitude: MagnitudeUnit::Ratio, .. }, Pane::Magnitude) => ValueUnit::Ratio,
             (_, Pane::Magnitude) => ValueUnit::Decibel,
             (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => ValueUnit::Millisecond,
             (_, Pane::Phase) => ValueUnit::Degree,
         }
-    }
-
-    /// What stands above a column of values of a pane, or of their changes.
-    pub(crate) fn column(self, pane: Pane, is_change: bool) -> &'static str {
-        match (self.unit(pane), is_change) {
-            (ValueUnit::Decibel, false) => "dB",
-            (ValueUnit::Ratio, false) => "ratio",
-            (ValueUnit::Degree, false) => "deg",
-            (ValueUnit::Millisecond, false) => "ms",
-            (ValueUnit::Decibel | ValueUnit::Ratio, true) => "Δ dB",
-            (ValueUnit::Degree, true) => "Δ deg",
-            (ValueUnit::Millisecond, true) => "Δ ms",
-        }
-    }
-
-    /// Digits behind the point of a value of a pane.
-    pub(crate) fn decimals(self, pane: Pane) -> usize {
-        match (self, self.unit(pane)) {
-            (_, ValueUnit::Ratio) => 3,
-            (Self::Error { .. }, ValueUnit::Decibel) => 2,
-            (Self::Response { .. }, ValueUnit::Degree) => 0,
-            _ => 1,
-        }
-    }
-
-    /// A drawn value of a pane in the unit that it is read in.
-    pub(crate) fn shown_value(self, pane: Pane, value: f64) -> f64 {
-        self.unit(pane).ticks().number(value)
     }
 
     /// What the numbers of a curve in a pane are, with the unit that they are drawn in.

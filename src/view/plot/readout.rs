@@ -1,10 +1,7 @@
-//! What hovering a curve says.
-
-use std::sync::Arc;
+//! What a curve has where the pointer is: in words, and in a strip between the panes.
 
 use egui::{
-    Align2, Color32, FontId, Galley, Painter, PopupAnchor, Rect, Response, RichText, Role as WidgetRole, Sense, Stroke,
-    StrokeKind, Tooltip, Ui, Vec2, WidgetInfo, pos2, vec2,
+    FontId, PopupAnchor, Rect, Response, RichText, Role as WidgetRole, Sense, Stroke, Tooltip, Ui, WidgetInfo, vec2,
 };
 use gdcm_core::response::wrap;
 use gdcm_files::figure::decimals;
@@ -13,7 +10,8 @@ use super::bode::BodeScene;
 use super::curve::{BodeCurve, Pane};
 use super::curve_style::Role;
 use super::quantity::BodeQuantity;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::controls::{elided, painted_text};
+use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
 pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> String {
@@ -62,123 +60,83 @@ pub(super) fn tooltip_ui(plot: &Response, content: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// The values of one role.
+/// The values of one role, or the difference of two.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadoutRow {
-    /// Whose they are.
-    pub role: Role,
-    /// One text for each column.
-    pub cells: Vec<String>,
+pub struct ReadoutCell {
+    /// Whose they are; none of a difference.
+    pub role: Option<Role>,
+    /// What stands above them.
+    pub name: String,
+    /// Magnitude and phase, each with its unit.
+    pub values: [String; 2],
+    /// Which of the two is worth a warning.
+    pub warns: [bool; 2],
 }
 
-/// What every role has at the cursor.
+/// What the roles have at a frequency.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
-    /// Where: "ω 2.05 rad/s".
+    /// Whose frequency it is: "ω at the pointer".
     pub heading: String,
-    /// What stands above the cells.
-    pub columns: Vec<&'static str>,
-    /// The roles, in the order of a legend.
-    pub rows: Vec<ReadoutRow>,
+    /// The frequency: "6.00 rad/s".
+    pub frequency: String,
+    /// The roles, in the order of the chips; the difference last.
+    pub cells: Vec<ReadoutCell>,
 }
 
 impl Readout {
     /// All of it as one sentence.
     fn words(&self) -> String {
-        let row = |row: &ReadoutRow| {
-            let cells = self.columns.iter().zip(&row.cells).map(|(column, cell)| format!("{column} {cell}"));
-            format!("{}: {}", row.role.name(), cells.collect::<Vec<_>>().join(", "))
-        };
-        let rows: Vec<String> = self.rows.iter().map(row).collect();
-        format!("At {}: {}", self.heading, rows.join("; "))
+        let cells: Vec<String> =
+            self.cells.iter().map(|cell| format!("{}: {}, {}", cell.name, cell.values[0], cell.values[1])).collect();
+        format!("{} {}: {}", self.heading, self.frequency, cells.join("; "))
     }
 }
 
-const FONT: FontId = FontId::monospace(10.5);
-const ROW_HEIGHT: f32 = 13.5;
-const COLUMN_GAP: f32 = 7.0;
-const PADDING: Vec2 = vec2(7.0, 5.0);
-const SWATCH: f32 = 4.0;
-/// Part of the plot that may be covered.
-const MOST_COVERED: f32 = 0.35;
+/// Height of the strip \[pt\].
+pub(super) const STRIP_HEIGHT: f32 = 40.0;
+/// A cell is not narrower \[pt\].
+const LEAST_CELL: f32 = 96.0;
 
-/// Draws a read-out into a corner of `frame` other than that which `taken` covers, at the right where labels stand at the left; not
-/// at all where it would hide too much of the plot.
-pub(super) fn readout_box_ui(
-    ui: &Ui,
-    frame: Rect,
-    readout: &Readout,
-    (taken, is_left_labelled): (Option<Rect>, bool),
-    palette: &Palette,
-) {
-    let painter = ui.painter().with_clip_rect(frame);
-    let table = Table::new(&painter, readout, palette);
-    let room = frame.shrink(9.0);
-    let is_small = table.size.x * table.size.y < MOST_COVERED * room.area();
-    if !is_small || table.size.x > room.width() || table.size.y > room.height() {
-        return;
-    }
-    let mut corners = [Align2::LEFT_BOTTOM, Align2::LEFT_TOP, Align2::RIGHT_BOTTOM, Align2::RIGHT_TOP];
-    if is_left_labelled {
-        corners.reverse();
-    }
-    let place = |corner: Align2| corner.align_size_within_rect(table.size, room);
-    let is_free = |corner: &Align2| taken.is_none_or(|taken| !taken.intersects(place(*corner)));
-    let rect = place(corners.into_iter().find(is_free).unwrap_or(corners[0]));
-    painter.rect(rect, 4.0, palette.raised.gamma_multiply(0.88), Stroke::new(1.0, palette.line), StrokeKind::Inside);
-    table.paint(&painter, rect);
-    let response = ui.interact(rect, ui.scope_id().with("read-out"), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.words()));
-}
-
-/// A read-out, laid out.
-struct Table {
-    heading: Arc<Galley>,
-    /// The columns' names, then the rows.
-    lines: Vec<(Option<Color32>, Vec<Arc<Galley>>)>,
-    widths: Vec<f32>,
-    size: Vec2,
-}
-
-impl Table {
-    fn new(painter: &Painter, readout: &Readout, palette: &Palette) -> Self {
-        let text = |text: String, color| painter.layout_no_wrap(text, FONT, color);
-        let names = std::iter::once("").chain(readout.columns.iter().copied());
-        let head = (None, names.map(|name| text(name.to_owned(), palette.dim_text)).collect());
-        let row = |row: &ReadoutRow| {
-            let cells = std::iter::once(row.role.short_name().to_owned()).chain(row.cells.iter().cloned());
-            let color = palette.role_style(row.role, false).color.to_opaque();
-            (Some(color), cells.map(|cell| text(cell, palette.text)).collect())
-        };
-        let lines: Vec<(Option<Color32>, Vec<Arc<Galley>>)> =
-            std::iter::once(head).chain(readout.rows.iter().map(row)).collect();
-        let width = |column: usize| {
-            lines.iter().filter_map(|(_, cells)| cells.get(column)).map(|cell| cell.size().x).fold(0.0, f32::max)
-        };
-        let widths: Vec<f32> = (0..=readout.columns.len()).map(width).collect();
-        let heading = text(readout.heading.clone(), palette.text);
-        let inner = widths.iter().sum::<f32>() + COLUMN_GAP * readout.columns.len() as f32 + 2.0 * SWATCH;
-        let size = vec2(inner.max(heading.size().x), ROW_HEIGHT * (lines.len() + 1) as f32) + 2.0 * PADDING;
-        Self { heading, lines, widths, size }
-    }
-
-    fn paint(self, painter: &Painter, rect: Rect) {
-        let corner = rect.min + PADDING;
-        painter.galley(corner, self.heading, Color32::PLACEHOLDER);
-        for (line, (color, cells)) in self.lines.into_iter().enumerate() {
-            let top = corner.y + ROW_HEIGHT * (line + 1) as f32;
-            if let Some(color) = color {
-                painter.circle_filled(pos2(corner.x + 2.0, top + 0.45 * ROW_HEIGHT), 2.5, color);
-            }
-            let mut left = corner.x + 2.0 * SWATCH;
-            for (column, cell) in cells.into_iter().enumerate() {
-                // Names to the left, numbers to the right of their columns.
-                let indent = if column == 0 { 0.0 } else { self.widths[column] - cell.size().x };
-                painter.galley(pos2(left + indent, top), cell, Color32::PLACEHOLDER);
-                left += self.widths[column] + COLUMN_GAP;
-            }
+/// Draws a read-out between the panes, its cells side by side; what there is no room for is left out, the first role first.
+pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
+    ui.painter().rect_filled(strip, 6.0, palette.raised);
+    let most = ((strip.width() / LEAST_CELL) as usize).saturating_sub(1);
+    let left_out = readout.cells.len().saturating_sub(most);
+    let cells = &readout.cells[left_out..];
+    // Frequency and difference have longer names than the roles.
+    let weight = |place: usize| if place == 0 || place == cells.len() { 1.25 } else { 1.0 };
+    let upto = |place: usize| (0..place).map(weight).sum::<f32>() / (0..=cells.len()).map(weight).sum::<f32>();
+    let column = |place: usize| {
+        let [left, right] = [place, place + 1].map(|place| strip.left() + upto(place) * strip.width());
+        strip.with_min_x(left).with_max_x(right).shrink2(vec2(8.0, 3.0))
+    };
+    let lines = |rect: Rect| [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
+    let small = FontId::proportional(SMALL_SIZE);
+    let [upper, lower] = lines(column(0));
+    painted_text(ui, upper, 0.0, &elided(ui, &readout.heading, upper.width(), SMALL_SIZE), small.clone(), palette.dim_text);
+    painted_text(ui, lower, 0.0, &readout.frequency, medium(BODY_SIZE), palette.text);
+    for (place, cell) in cells.iter().enumerate() {
+        let [upper, lower] = lines(column(place + 1));
+        let left = column(place + 1).left() - 8.0;
+        ui.painter().vline(left, strip.shrink(8.0).y_range(), Stroke::new(1.0, palette.line));
+        let mut from = 0.0;
+        if let Some(role) = cell.role {
+            let mut shapes = Vec::new();
+            let [start, end] = [upper.left_center(), upper.left_center() + vec2(14.0, 0.0)];
+            palette.role_style(role, false).in_miniature().add_shapes(vec![start, end], &mut shapes);
+            ui.painter().extend(shapes);
+            from = 20.0;
         }
+        let name = elided(ui, &cell.name, upper.width() - from, SMALL_SIZE);
+        painted_text(ui, upper, from, &name, small.clone(), palette.dim_text);
+        let color = |warns| if warns { palette.warning } else { palette.text };
+        let font = if cell.role.is_none() { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
+        painted_text(ui, lower, 0.0, &cell.values[0], font.clone(), color(cell.warns[0]));
+        painted_text(ui, lower, -0.01, &cell.values[1], font, color(cell.warns[1]));
     }
+    let response = ui.interact(strip, ui.scope_id().with("read-out"), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.words()));
 }
 
 #[cfg(test)]

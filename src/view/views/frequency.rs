@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 
 use egui::Ui;
 use gdcm_core::dataset::{Band, ModelId, Pair};
+use gdcm_core::fidelity::{MAGNITUDE_WEIGHT, PHASE_WEIGHT};
 use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
-use gdcm_core::units::s_to_ms;
 use gdcm_files::figure::{BodeOptions, ConditionSource};
 
 use crate::view::command::Command;
@@ -15,7 +15,7 @@ use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
 use crate::view::plot::{
     BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout,
-    ReadoutRow, Role, bode_ui, decimals,
+    ReadoutCell, Role, ValueUnit, bode_ui,
 };
 use crate::view::state::State;
 
@@ -31,13 +31,15 @@ pub(super) fn frequency_plot_ui(
     let display = &state.display.curves;
     let (quantity, curves, unit) = (scene.quantity, scene.curves, state.display.unit);
     let at = (display.cursor, display.pinned.as_slice());
-    let readout = if display.lists_values { cursor_readout(curves, quantity, unit, at) } else { None };
+    let readout = display.lists_values.then(|| cursor_readout(curves, (quantity, unit), at, scene.band)).flatten();
     let (chips, of_chips): (Vec<Chip>, Vec<Command>) = chips(state).into_iter().unzip();
     let scene = BodeScene {
         cursor: display.cursor,
         pinned: &display.pinned,
         readout: readout.as_ref(),
         hidden_roles: &display.hidden_roles,
+        raised: display.raised,
+        names_curves: state.display.is_wide && scene.quantity.is_of_condition(),
         chips: &chips,
         unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
@@ -69,6 +71,9 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
         BodeEvent::RoleToggled(role) => Some(CurveCommand::ToggleRole(role).into()),
+        BodeEvent::RoleAlone(role) => Some(CurveCommand::ShowRoleAlone(role).into()),
+        BodeEvent::RoleRaised(role) => Some(CurveCommand::RaiseRole(role).into()),
+        BodeEvent::BandsShown(shown) => Some(CurveCommand::ShowBands(shown).into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),
         BodeEvent::Wished(id, wish) => wished(state, id, wish),
         BodeEvent::Boxed(curves) => {
@@ -186,7 +191,7 @@ pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
 }
 
 /// Every curve of one response in the condition shown; none until its responses are there.
-pub(super) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
+pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
     let options = bode_options(state);
     let curves = condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
@@ -222,94 +227,92 @@ fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
     curves
 }
 
-/// The values of every role at the cursor \[rad/s\], or what changes between two marked frequencies; nothing without either.
+/// The roles whose values are told.
+const TOLD: [Role; 4] = [Role::Nominal, Role::IdentifiedRepresentative, Role::Corrected, Role::Scheduled];
+
+/// The values of the heavy curves at the pointer or at a marked frequency \[rad/s\]; without either, at the frequency of the largest
+/// error within the band. Of two marked frequencies, what changes from one to the other.
 pub fn cursor_readout(
     curves: &[BodeCurve],
-    quantity: BodeQuantity<'_>,
-    unit: FrequencyUnit,
+    (quantity, unit): (BodeQuantity<'_>, FrequencyUnit),
     (cursor, pinned): (Option<f64>, &[f64]),
+    band: (f64, f64),
 ) -> Option<Readout> {
-    let of_each = |row: &dyn Fn(&[&BodeCurve]) -> Vec<String>| -> Vec<ReadoutRow> {
-        let members = |role: Role| -> Vec<&BodeCurve> {
-            curves.iter().filter(|curve| !curve.hidden && curve.role.shown(curve.rejected) == role).collect()
-        };
-        let rows = Role::ALL.into_iter().map(|role| (role, members(role)));
-        let present = rows.filter(|(_, members)| !members.is_empty());
-        present.map(|(role, members)| ReadoutRow { role, cells: row(&members) }).collect()
-    };
+    let of_role = |role: Role| curves.iter().find(|curve| !curve.hidden && curve.role == role);
+    let told = TOLD.into_iter().filter_map(|role| Some((role, of_role(role)?)));
+    let frequency = |omega: f64| unit.readout(omega).trim_start_matches("ω ").to_owned();
     if let [from, to] = *pinned {
-        let heading = format!("{} → {}", unit.readout(from), unit.readout(to));
-        let rows = of_each(&|members| change_cells(members, quantity, (from, to)));
-        return Some(Readout { heading, columns: names(quantity, ["Δ", "Δ"]), rows });
+        let change = |curve: &BodeCurve, pane| Some(curve.value_at(pane, to)? - curve.value_at(pane, from)?);
+        let cell = |(role, curve): (Role, &BodeCurve)| ReadoutCell {
+            role: Some(role),
+            name: format!("Δ {}", role.name()),
+            values: PANES.map(|pane| change_text(quantity, pane, change(curve, pane))),
+            warns: [false; 2],
+        };
+        let frequency = format!("{} → {}", unit.readout(from).trim_start_matches("ω "), frequency(to));
+        return Some(Readout { heading: "change between marks".to_owned(), frequency, cells: told.map(cell).collect() });
     }
-    let omega = cursor.or(pinned.first().copied())?;
-    let heading = unit.readout(omega);
-    let readout = match quantity {
-        BodeQuantity::Error { .. } => {
-            let rows = of_each(&|members| value_cells(members, quantity, omega).to_vec());
-            Readout { heading, columns: names(quantity, ["", ""]), rows }
-        }
-        BodeQuantity::Response { .. } => {
-            let reference = curves.iter().find(|curve| curve.role == Role::IdentifiedRepresentative);
-            let rows = of_each(&|members| {
-                let differences = difference_cells(members, reference, omega);
-                value_cells(members, quantity, omega).into_iter().chain(differences).collect()
-            });
-            let mut columns = names(quantity, ["", ""]);
-            columns.extend(["Δ dB", "Δ deg", "Δ ms"]);
-            Readout { heading, columns, rows }
-        }
+    let pair = of_role(Role::Corrected).zip(of_role(Role::IdentifiedRepresentative));
+    let (heading, omega) = match (cursor, pinned) {
+        (Some(omega), _) => ("ω at the pointer", omega),
+        (None, [omega, ..]) => ("ω at the mark", *omega),
+        (None, []) => ("ω of the largest error", largest_error(pair?, band)?),
     };
-    Some(readout)
-}
-
-/// The columns of magnitude and phase.
-fn names(quantity: BodeQuantity<'_>, marks: [&str; 2]) -> Vec<&'static str> {
-    let is_change = !marks[0].is_empty();
-    [Pane::Magnitude, Pane::Phase].map(|pane| quantity.column(pane, is_change)).to_vec()
-}
-
-/// One number of several curves: itself, or from where to where it goes.
-fn cell(values: impl Iterator<Item = f64>, count: usize) -> String {
-    let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for value in values.filter(|value| value.is_finite()) {
-        (least, greatest) = (least.min(value), greatest.max(value));
+    let cell = |(role, curve): (Role, &BodeCurve)| ReadoutCell {
+        role: Some(role),
+        name: if curve.rejected { format!("{}, rejected", role.name()) } else { role.name().to_owned() },
+        values: PANES.map(|pane| {
+            curve.value_at(pane, omega).map_or("–".to_owned(), |value| quantity.unit(pane).readout(value))
+        }),
+        warns: [false; 2],
+    };
+    let mut cells: Vec<ReadoutCell> = told.map(cell).collect();
+    if let (BodeQuantity::Response { .. }, Some((corrected, identified))) = (quantity, pair) {
+        cells.push(difference_cell(quantity, (corrected, identified), omega));
     }
-    match (least <= greatest, decimals(least, count), decimals(greatest, count)) {
-        (false, ..) => "–".to_owned(),
-        (true, least, greatest) if least == greatest => least,
-        (true, least, greatest) => format!("{least}…{greatest}"),
+    Some(Readout { heading: heading.to_owned(), frequency: frequency(omega), cells })
+}
+
+const PANES: [Pane; 2] = [Pane::Magnitude, Pane::Phase];
+
+fn change_text(quantity: BodeQuantity<'_>, pane: Pane, change: Option<f64>) -> String {
+    // The ratio of two ratios is a difference of decibels.
+    let unit = match quantity.unit(pane) {
+        ValueUnit::Ratio => ValueUnit::Decibel,
+        unit => unit,
+    };
+    change.map_or("–".to_owned(), |change| unit.readout(change))
+}
+
+/// The corrected less the identified model: decibels, and the principal value of the phases, for a single frequency knows no turns
+/// (M4). Warned of from 1 dB and from 10 degrees on: below, J is small.
+fn difference_cell(
+    quantity: BodeQuantity<'_>,
+    (corrected, identified): (&BodeCurve, &BodeCurve),
+    omega: f64,
+) -> ReadoutCell {
+    let difference = |pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?);
+    let magnitude = difference(Pane::Magnitude);
+    let phase = difference(Pane::Phase).map(|degrees| wrap(degrees.to_radians()).to_degrees());
+    let above = |value: Option<f64>, limit: f64| value.is_some_and(|value| value.abs() >= limit);
+    ReadoutCell {
+        role: None,
+        name: "corrected − identified".to_owned(),
+        values: [change_text(quantity, Pane::Magnitude, magnitude), change_text(quantity, Pane::Phase, phase)],
+        warns: [above(magnitude, 1.0), above(phase, 10.0)],
     }
 }
 
-fn value_cells(members: &[&BodeCurve], quantity: BodeQuantity<'_>, omega: f64) -> [String; 2] {
-    [Pane::Magnitude, Pane::Phase].map(|pane| {
-        let values = members.iter().filter_map(|curve| curve.value_at(pane, omega));
-        cell(values.map(|value| quantity.shown_value(pane, value)), quantity.decimals(pane))
-    })
-}
-
-fn change_cells(members: &[&BodeCurve], quantity: BodeQuantity<'_>, (from, to): (f64, f64)) -> Vec<String> {
-    let change = |pane| {
-        let of = move |curve: &&BodeCurve| Some(curve.value_at(pane, to)? - curve.value_at(pane, from)?);
-        cell(members.iter().filter_map(of), quantity.decimals(pane))
+/// The frequency within the band at which what J is made of is greatest: `W_g e_dB^2 + W_p e_deg^2` (M4).
+fn largest_error((corrected, identified): (&BodeCurve, &BodeCurve), (min, max): (f64, f64)) -> Option<f64> {
+    let error = |omega: f64| {
+        let [db, deg] = PANES.map(|pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?));
+        let deg = wrap(deg?.to_radians()).to_degrees();
+        Some(MAGNITUDE_WEIGHT * db?.powi(2) + PHASE_WEIGHT * deg.powi(2))
     };
-    [Pane::Magnitude, Pane::Phase].map(change).to_vec()
-}
-
-/// Magnitude \[dB\] and phase \[deg\] less those of the reference, and the delay \[ms\] that the difference of phases means: its
-/// principal value, for a single frequency knows no turns (M4).
-fn difference_cells(members: &[&BodeCurve], reference: Option<&BodeCurve>, omega: f64) -> [String; 3] {
-    let difference = |pane| {
-        let of_reference = reference.and_then(|reference| reference.value_at(pane, omega));
-        members.iter().filter_map(move |curve| Some(curve.value_at(pane, omega)? - of_reference?))
-    };
-    let phases: Vec<f64> = difference(Pane::Phase).map(|degrees| wrap(degrees.to_radians())).collect();
-    [
-        cell(difference(Pane::Magnitude), 2),
-        cell(phases.iter().map(|phase| phase.to_degrees()), 1),
-        cell(phases.iter().map(|phase| s_to_ms(phase / omega)), 1),
-    ]
+    let within = corrected.omega.iter().copied().filter(|omega| (min..=max).contains(omega));
+    let errors = within.filter_map(|omega| Some((omega, error(omega)?)));
+    errors.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(omega, _)| omega)
 }
 
 #[cfg(test)]
@@ -339,41 +342,47 @@ mod tests {
             flat("b", Role::Perturbed, -1.0, 0.0),
             flat("n", Role::Nominal, 2.0, 400.0),
             flat("i", Role::IdentifiedRepresentative, 1.0, 10.0),
+            flat("c", Role::Corrected, 2.5, 400.0),
         ]
     }
 
-    fn readout(pinned: &[f64]) -> Readout {
-        let cursor = pinned.is_empty().then_some(1.0);
-        let unit = FrequencyUnit::RadPerSecond;
-        cursor_readout(&curves(), BodeQuantity::RESPONSE, unit, (cursor, pinned)).unwrap()
+    const BAND: (f64, f64) = (0.5, 12.0);
+
+    fn readout(cursor: Option<f64>, pinned: &[f64]) -> Readout {
+        let shown = (BodeQuantity::RESPONSE, FrequencyUnit::RadPerSecond);
+        cursor_readout(&curves(), shown, (cursor, pinned), BAND).unwrap()
     }
 
-    fn cells(readout: &Readout, role: Role) -> Vec<&str> {
-        let row = readout.rows.iter().find(|row| row.role == role).unwrap();
-        row.cells.iter().map(String::as_str).collect()
+    fn values(readout: &Readout, name: &str) -> [String; 2] {
+        readout.cells.iter().find(|cell| cell.name == name).unwrap().values.clone()
     }
 
     #[test]
-    fn every_role_is_listed_with_its_difference_from_the_identified_model() {
-        let readout = readout(&[]);
-        assert_eq!(readout.columns, ["dB", "deg", "Δ dB", "Δ deg", "Δ ms"]);
-        // 400° is a turn and 30° ahead of 10°: 30° at 1 rad/s are 523.6 ms.
-        assert_eq!(cells(&readout, Role::Nominal), ["2.0", "400", "1.00", "30.0", "523.6"]);
-        assert_eq!(cells(&readout, Role::IdentifiedRepresentative), ["1.0", "10", "0.00", "0.0", "0.0"]);
-        assert_eq!(cells(&readout, Role::Perturbed)[0], "\u{2212}3.0…\u{2212}1.0", "of several models, the range");
+    fn the_heavy_curves_are_told_and_what_the_correction_leaves() {
+        let readout = readout(Some(1.0), &[]);
+        assert_eq!((readout.heading.as_str(), readout.frequency.as_str()), ("ω at the pointer", "1.00 rad/s"));
+        assert_eq!(values(&readout, "nominal"), ["2.0 dB", "400°"]);
+        assert_eq!(values(&readout, "identified"), ["1.0 dB", "10°"]);
+        // 400° is a turn and 30° ahead of 10°.
+        assert_eq!(values(&readout, "corrected − identified"), ["1.5 dB", "30°"]);
+        assert_eq!(readout.cells.last().unwrap().warns, [true, true]);
     }
 
     #[test]
     fn between_two_marks_the_changes_are_listed() {
-        let readout = readout(&[1.0, 4.0]);
-        assert_eq!(readout.columns, ["Δ dB", "Δ deg"]);
-        assert_eq!(cells(&readout, Role::Nominal), ["0.0", "\u{2212}90"]);
-        assert_eq!(readout.heading, "ω 1.00 rad/s → ω 4.00 rad/s");
+        let readout = readout(None, &[1.0, 4.0]);
+        assert_eq!(values(&readout, "Δ nominal"), ["0.0 dB", "\u{2212}90°"]);
+        assert_eq!(readout.frequency, "1.00 rad/s → 4.00 rad/s");
     }
 
     #[test]
-    fn without_a_cursor_there_is_nothing_to_list() {
-        let unit = FrequencyUnit::RadPerSecond;
-        assert_eq!(cursor_readout(&curves(), BodeQuantity::RESPONSE, unit, (None, &[])), None);
+    fn without_a_pointer_the_largest_error_in_the_band_is_told() {
+        let mut curves = curves();
+        let shown = (BodeQuantity::RESPONSE, FrequencyUnit::RadPerSecond);
+        let corrected = curves.iter_mut().find(|curve| curve.role == Role::Corrected).unwrap();
+        corrected.magnitude_db = vec![1.0, 9.0].into();
+        let readout = cursor_readout(&curves, shown, (None, &[]), BAND).unwrap();
+        assert_eq!((readout.heading.as_str(), readout.frequency.as_str()), ("ω of the largest error", "4.00 rad/s"));
+        assert_eq!(cursor_readout(&curves, shown, (None, &[]), (5.0, 12.0)), None, "nothing is within the band");
     }
 }

@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use egui::{Button, Role, Ui, WidgetInfo};
+use egui::Ui;
 use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, SimulationJob, VariantJob};
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
 
-use super::{Command, Palette, State};
+use super::{Command, Palette, State, ViewGroup};
 
 mod across;
 mod assessment;
@@ -29,7 +29,7 @@ pub use channels::*;
 pub use compare::*;
 pub use error::*;
 pub use evidence::*;
-pub(in crate::view) use frequency::{bode_options, condition_source};
+pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;
@@ -65,17 +65,22 @@ impl View {
     /// Every view, in the order of the menu.
     pub const ALL: [Self; 11] = [
         Self::Bode,
+        Self::Error,
         Self::Overview,
         Self::Across,
         Self::Poles,
         Self::Records,
-        Self::Channels,
-        Self::Assessment,
-        Self::Evidence,
-        Self::Compare,
         Self::NetGain,
-        Self::Error,
+        Self::Channels,
+        Self::Evidence,
+        Self::Assessment,
+        Self::Compare,
     ];
+
+    /// Those that the dock may show.
+    pub fn docked(_state: &State) -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().filter(|view| view.kind().is_docked)
+    }
 
     /// What its tab says.
     pub fn name(self) -> &'static str {
@@ -87,19 +92,13 @@ impl View {
         match self {
             Self::Bode => ViewKind {
                 title: ViewTitle::Response,
-                tools: |ui, _, _, commands| fit_ui(ui, "Fit", commands),
-                tools_width: 90.0,
                 figure: Some(FigureKind::Bode),
                 ..ViewKind::new("Bode", "Magnitude and phase of the response in focus", bode_view_ui)
             },
             Self::Error => ViewKind {
                 title: ViewTitle::Response,
-                tools: |ui, state, _, commands| {
-                    fit_ui(ui, "Fit the errors", commands);
-                    error_header_ui(ui, state, commands);
-                },
-                tools_width: 260.0,
-                is_lower: true,
+                tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
+                tools_width: 160.0,
                 figure: Some(FigureKind::Error),
                 ..ViewKind::new(
                     "Error",
@@ -109,11 +108,11 @@ impl View {
             },
             Self::Overview => ViewKind {
                 title: ViewTitle::Condition,
-                tools_width: 90.0,
                 figure: Some(FigureKind::Overview),
                 ..ViewKind::new("Overview", "Every response of the condition, small", overview_view_ui)
             },
             Self::Across => ViewKind {
+                title: ViewTitle::Focus,
                 tools: across_header_ui,
                 tools_width: 330.0,
                 needs: |state| vec![Need::Across(across_job(state))],
@@ -125,6 +124,7 @@ impl View {
                 )
             },
             Self::Poles => ViewKind {
+                group: ViewGroup::Models,
                 title: ViewTitle::Condition,
                 tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
                 tools_width: 180.0,
@@ -140,6 +140,8 @@ impl View {
                 )
             },
             Self::Records => ViewKind {
+                group: ViewGroup::Models,
+                takes_dock: true,
                 title: ViewTitle::Condition,
                 tools: |ui, state, _, commands| super::records::records_header_ui(ui, state, commands),
                 tools_width: 380.0,
@@ -151,6 +153,7 @@ impl View {
                 )
             },
             Self::Channels => ViewKind {
+                group: ViewGroup::Schedule,
                 tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
                 tools_width: 410.0,
                 is_of_all_conditions: true,
@@ -158,6 +161,7 @@ impl View {
                 ..ViewKind::new("Channels", "Gain of every channel against airspeed", channels_view_ui)
             },
             Self::Assessment => ViewKind {
+                group: ViewGroup::Judge,
                 tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
                 tools_width: 640.0,
                 is_of_all_conditions: true,
@@ -176,6 +180,8 @@ impl View {
             },
             // The button of its figure stands in its first line: it has no tools.
             Self::Evidence => ViewKind {
+                group: ViewGroup::Schedule,
+                takes_dock: true,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Evidence),
                 ..ViewKind::new(
@@ -185,6 +191,7 @@ impl View {
                 )
             },
             Self::Compare => ViewKind {
+                group: ViewGroup::Judge,
                 needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
                 ..ViewKind::new(
                     "Compare",
@@ -193,10 +200,12 @@ impl View {
                 )
             },
             Self::NetGain => ViewKind {
+                group: ViewGroup::Schedule,
+                is_docked: true,
+                long_name: "Net gain over airspeed",
                 tools: net_gain_header_ui,
                 tools_width: NET_GAIN_CONTROLS,
                 is_of_all_conditions: true,
-                is_lower: true,
                 figure: Some(FigureKind::NetGain),
                 ..ViewKind::new(
                     "Net gain",
@@ -221,14 +230,20 @@ pub struct ViewKind {
     pub title: ViewTitle,
     /// The controls in its header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// The width that they need \[pt\]; the title takes what is left. A view without has no header.
+    /// The width that they need \[pt\]; the title takes what is left.
     pub tools_width: f32,
     /// What has to be computed for it beside the live answer.
     pub needs: fn(&State) -> Vec<Need>,
     /// Whether it shows results of every condition: it is said where those are of older settings.
     pub is_of_all_conditions: bool,
-    /// Whether it stands in the second group of tabs at first.
-    pub is_lower: bool,
+    /// The group that it stands in.
+    pub group: ViewGroup,
+    /// Whether the dock may show it.
+    pub is_docked: bool,
+    /// Whether it takes the room of the dock.
+    pub takes_dock: bool,
+    /// What its heading in the dock says.
+    pub long_name: &'static str,
     /// What it is on paper. Variants are tables, which are saved as such; of records what is identified is saved.
     pub figure: Option<FigureKind>,
 }
@@ -248,7 +263,10 @@ impl ViewKind {
             tools_width: 0.0,
             needs: |_| Vec::new(),
             is_of_all_conditions: false,
-            is_lower: false,
+            group: ViewGroup::Response,
+            is_docked: false,
+            takes_dock: false,
+            long_name: name,
             figure: None,
         }
     }
@@ -263,6 +281,8 @@ pub enum ViewTitle {
     Condition,
     /// The response in focus, and the condition.
     Response,
+    /// The response in focus.
+    Focus,
 }
 
 /// What a view has to have computed beside the live answer.
@@ -278,14 +298,4 @@ pub enum Need {
     Variant(VariantJob),
     /// A model against a record in time.
     Simulation(SimulationJob),
-}
-
-/// Brings every curve back into view; the button has this accessible name.
-fn fit_ui(ui: &mut Ui, name: &str, commands: &mut Vec<Command>) {
-    let fit = ui.add(Button::new("Fit").small());
-    let enabled = ui.is_enabled();
-    fit.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, name));
-    if fit.on_hover_text("Bring every curve into view (F, or double click)").clicked() {
-        commands.push(Command::FitPlots);
-    }
 }

@@ -123,7 +123,7 @@ fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
     for entry in command_table(state(&window)).iter().filter(|entry| !entry.shortcuts.is_empty()) {
         assert!(window.query_all_by_label_contains(&entry.name).next().is_some(), "{}", entry.name);
     }
-    let close = window.get_by_label("Close").rect();
+    let close = window.get_by_role_and_label(Role::Button, "Close").rect();
     assert!(close.max.y < 560.0, "{close}");
 }
 

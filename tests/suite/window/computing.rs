@@ -61,7 +61,7 @@ fn note_panics() {
 }
 
 fn set_alpha(window: &mut Window, alpha: f64) {
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(alpha);
+    slide(&mut window, "α gains", alpha);
     window.run_steps(2);
 }
 
@@ -177,6 +177,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     let trap = Trap::default();
     let mut window = window_with(example(), trap.warm_setup());
     let before = state(&window).results.received;
+    unfold_settings(&mut window, true);
     // However fast the machine is, nothing is computed before the click.
     trap.close(true);
     window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(2000.0);
@@ -196,6 +197,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     let mut window = window_with(example(), Setup::default());
     show(&mut window, View::Evidence);
+    unfold_settings(&mut window, true);
     // Five times the points: far more work than the frames until the click give it time for.
     window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(1000.0);
     settle(&mut window);
@@ -232,7 +234,7 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
     wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
     settle(&mut window);
-    window.get_by_label("global optimum");
+    window.get_by_label("global optimum ✓");
     let proven = Engine::default().analyze(&study, &Unobserved).unwrap();
     let shown = state(&window).analysis().unwrap();
     for (condition, (beside, alone)) in shown.conditions.values().zip(proven.conditions.values()).enumerate() {

@@ -1,7 +1,9 @@
 //! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
 
 use super::plots::{drag_along, place_on_nominal};
+use super::views::show;
 use super::*;
+use gdcm::view::arrangement::View;
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
@@ -20,7 +22,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let mut window = window();
     choose_condition_10(&mut window);
     click(&mut window, "Reject 3 suggested");
-    click(&mut window, "Error");
+    show(&mut window, View::Error);
     let pair = pair(&window, "Q", "LON");
     let shown = state(&window).shown().unwrap().clone();
     let (gain, delay_s) = (shown.comparison.delta.gain[pair].unwrap(), shown.comparison.delta.delay_s[pair].unwrap());
@@ -50,7 +52,7 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
 #[test]
 fn phase_errors_can_be_read_as_delays() {
     let mut window = window();
-    click(&mut window, "Error");
+    show(&mut window, View::Error);
     let degrees = error(&window, CurveRole::Corrected);
     choose_of_curves(&mut window, "Phase errors as delays");
     let delays = error(&window, CurveRole::Corrected);
@@ -73,7 +75,7 @@ fn choose_of_curves(window: &mut Window, entry: &str) {
 fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bode_plot() {
     let mut window = window();
     choose_condition_10(&mut window);
-    click(&mut window, "Error");
+    show(&mut window, View::Error);
     let nominal = error(&window, CurveRole::Nominal);
     // Where the step of the physics model takes it farthest from the others.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
@@ -193,7 +195,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
         let at = frame.lerp_inside(vec2(part, 0.98));
         window.hover_at(at);
         window.run_steps(3);
-        assert!(window.query_by_label_contains("corrected: dB").is_some(), "listed at the cursor");
+        assert!(window.query_by_label_contains("; corrected: ").is_some(), "listed at the cursor");
         for pressed in [true, false] {
             let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
             window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
@@ -204,7 +206,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
     }
     assert_eq!(state(&window).display.curves.pinned.len(), 2);
     window.run_steps(2);
-    assert!(window.query_by_label_contains("corrected: Δ dB").is_some(), "the changes between the marks");
+    assert!(window.query_by_label_contains("Δ corrected: ").is_some(), "the changes between the marks");
     window.hover_at(frame.lerp_inside(vec2(0.5, 0.98)));
     window.run_steps(2);
     let middle = state(&window).display.curves.cursor.expect("the pointer is in the plot");
@@ -213,7 +215,7 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
     let pinned = state(&window).display.curves.pinned.clone();
     assert!(pinned.len() == 2 && (pinned[1] / middle - 1.0).abs() < 1e-9, "{pinned:?} {middle}");
     choose_of_curves(&mut window, "List no values at the cursor");
-    assert!(window.query_by_label_contains("corrected: Δ dB").is_none());
+    assert!(window.query_by_label_contains("Δ corrected: ").is_none());
 }
 
 #[test]

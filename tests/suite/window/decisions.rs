@@ -2,7 +2,9 @@
 
 use gdcm_core::study::derivation;
 
+use super::views::give;
 use super::*;
+use gdcm::view::Command as Action;
 
 #[test]
 fn from_the_example_to_exported_corrections() {
@@ -32,7 +34,7 @@ fn from_the_example_to_exported_corrections() {
     click(&mut window, "Hold LON → Q");
     let first = |window: &Window| channel_plots(state(window)).figure.plots[0].panels[0].dots().next().unwrap().y;
     let before = first(&window);
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     assert_eq!(state(&window).study.settings.alpha_gain, 12.5);
     assert!((before - first(&window)).abs() > 1e-4, "the dots of the channel gains moved");
@@ -55,7 +57,7 @@ fn freeing_an_on_axis_entry_moves_its_net_gain_dots_with_alpha() {
     let gain = |window: &Window| net_gain(window, "NY", "PED");
     click(&mut window, "Hold PED → NY");
     let before = gain(&window);
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(100.0);
+    slide(&mut window, "α gains", 100.0);
     settle(&mut window);
     assert!((gain(&window) - before).abs() > 1e-4, "{before} stayed");
 }
@@ -67,7 +69,7 @@ fn every_choice_can_be_undone_and_done_again() {
     let start = state(&window).study.clone();
     click(&mut window, "Reject 3 suggested");
     click(&mut window, "Hold PED → R");
-    window.get_by_role_and_label(Role::Slider, "α delays slider").set_value_accesskit(3.0);
+    slide(&mut window, "α delays", 3.0);
     settle(&mut window);
     let end = state(&window).study.clone();
     for _ in 0..3 {
@@ -89,6 +91,7 @@ fn at_least_one_model_stays_in_each_bundle() {
     let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
     let models: Vec<String> =
         state(&window).condition().bundle(BundleKind::Identified).iter().map(|model| model.name.clone()).collect();
+    give(&mut window, Action::ShowIdentified(true));
     for model in &models {
         click(&mut window, &format!("Keep identified model {model}"));
     }
@@ -112,7 +115,7 @@ fn a_pinned_model_represents_its_bundle() {
 #[test]
 fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() {
     let mut window = window();
-    window.get_by_label("global optimum");
+    window.get_by_label("global optimum ✓");
     wait_for_toggles(&mut window);
     for (output, input, word) in [("Q", "LON", "holding LON → Q costs"), ("Q", "PED", "holding PED → Q would")] {
         let costs = toggle_costs(state(&window), pair(&window, output, input));
@@ -123,9 +126,11 @@ fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() 
 #[test]
 fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     let mut window = window();
+    unfold_settings(&mut window, true);
     window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
     settle(&mut window);
-    window.get_by_label("not matched");
+    unfold_settings(&mut window, false);
+    window.get_by_label_contains("stops at a bound");
     let shown = state(&window).shown().unwrap();
     let texts: Vec<String> = remarks_shown(state(&window), shown).into_iter().map(|remark| remark.text).collect();
     assert!(texts.iter().any(|text| text.contains("LON → Q cannot be held")), "{texts:?}");

@@ -7,6 +7,7 @@ use gdcm::view::figures::{figure_of, views_with_figure};
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 use gdcm_files::{csv_text, write_as};
 
+use super::views::show;
 use super::*;
 
 /// Asks for a view's file through the button in its header, and types where to put it.
@@ -35,7 +36,7 @@ fn every_view_is_saved_from_its_header() {
     let folder = tempfile::tempdir().unwrap();
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     for view in views_with_figure() {
-        click(&mut window, view.name());
+        show(&mut window, view);
         assert_saved(&mut window, view, FigureFormat::Svg, folder.path());
     }
 }

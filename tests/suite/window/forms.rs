@@ -42,7 +42,7 @@ fn enter_exports_and_what_exists_already_is_asked_about() {
     assert!(written.exists());
     let first = std::fs::read(&written).unwrap();
 
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     press(&mut window, Modifiers::COMMAND, Key::E);
     type_text(&mut window, "~/results");
@@ -62,9 +62,11 @@ fn enter_exports_and_what_exists_already_is_asked_about() {
 #[test]
 fn coherence_is_switched_where_something_is_measured_with_it() {
     let mut example = window();
+    unfold_settings(&mut example, true);
     assert!(example.query_by_label("Coherence counts").is_none(), "the example has none");
     open_by_path(&mut example, &files::small_dataset());
     settle(&mut example);
+    unfold_settings(&mut example, true);
     assert_eq!(state(&example).study.settings.coherence_threshold, Some(0.6));
     click(&mut example, "Coherence counts");
     assert_eq!(state(&example).study.settings.coherence_threshold, None);

@@ -5,8 +5,10 @@ use gdcm_core::study::{AssessedCorrection, PhaseCorrection};
 
 use super::views::give;
 use super::*;
+use gdcm::view::Sheet;
 
 fn choose(window: &mut Window, list: &str, choice: &str) {
+    unfold_settings(window, true);
     window.get_by_role_and_label(Role::ComboBox, list).click();
     window.run_steps(3);
     click(window, choice);
@@ -17,7 +19,7 @@ fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
     let mut window = window();
     let before = state(&window).shown().unwrap().correction.clone();
     assert!(before.leads.is_none());
-    // It may stand below what the panel shows.
+    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
     window.get_by_label("Correct the phase by delay or lead").click_accesskit();
     settle(&mut window);
     assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
@@ -66,6 +68,7 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
     assert!(with.phase_deg[at_top] > without.phase_deg[at_top] + 10.0, "lead turns the phase up");
     // The gains differ a little, the phase is that of gains alone: the example's delays are none.
     assert!((without.phase_deg[at_top] - gains_alone.phase_deg[at_top]).abs() < 1e-9);
+    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
     let told = window.query_all_by_label_contains("as if a servo of").count();
     assert_eq!(told, 10, "a sentence for each channel");
     assert!(window.query_by_label_contains("Do not use the corrected model above 12 rad/s.").is_some());
@@ -88,7 +91,7 @@ fn channels_show_signed_delays_within_their_bounds() {
 fn the_assessment_is_had_without_the_leads_too() {
     let mut window = window();
     choose(&mut window, "Phase correction", "delay or lead");
-    click(&mut window, "Assessment");
+    show(&mut window, View::Assessment);
     let mean = |window: &Window| {
         let table = state(window).assessment().unwrap();
         let measuring = state(window).dataset().measuring_pairs();

@@ -131,6 +131,23 @@ fn choose_condition_10(window: &mut Window) {
     click(window, "Response LON → Q");
 }
 
+/// Unfolds the settings, those that are seldom changed too, or folds them.
+pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
+    use gdcm::view::Command::{ShowAdvanced, ShowSettings};
+    for command in [ShowSettings(is_open), ShowAdvanced(is_open)] {
+        window.state_mut().dispatch(command);
+    }
+    window.run_steps(2);
+}
+
+/// Moves the slider of a setting, which is unfolded for that.
+pub(crate) fn slide(window: &mut Window, name: &str, value: f64) {
+    unfold_settings(window, true);
+    window.get_by_role_and_label(Role::Slider, &format!("{name} slider")).set_value_accesskit(value);
+    window.run_steps(2);
+    unfold_settings(window, false);
+}
+
 pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.get_by_label(field).focus();
     window.run_steps(2);

@@ -12,7 +12,7 @@ use dream_soft_render::{ClipRect, Color, Mesh, SoftwareRenderer, TextureId, Vert
 use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
-use gdcm::view::arrangement::{Preset, View};
+use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::palette::Palette;
 use gdcm_core::study::Edit;
@@ -143,7 +143,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
     let writes = std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write");
     let textures = Textures::default();
     let mut window = pictured_window(&textures);
-    give(&mut window, Action::Arrange(Preset::Single));
+    give(&mut window, Action::OpenDock(false));
     give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
     click(&mut window, CONDITION_10);
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());

@@ -170,8 +170,9 @@ fn a_click_on_a_net_gain_dot_goes_to_its_condition() {
 #[test]
 fn an_idle_window_draws_no_frames() {
     let mut window = window();
-    for tab in ["Bode", "Overview", "Channels", "Assessment"] {
-        click(&mut window, tab);
+    for view in [View::Bode, View::Overview, View::Channels, View::Assessment] {
+        show(&mut window, view);
+        let tab = view.name();
         wait_for_background(&mut window);
         let frames = window.run();
         assert!(frames < 60, "{tab} settled after {frames} frames");
@@ -201,9 +202,9 @@ fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
 #[test]
 fn what_is_out_of_sight_is_not_tessellated() {
     let mut window = window();
-    for tab in ["Overview", "Channels", "Assessment", "Bode"] {
-        click(&mut window, tab);
-        assert_little_is_hidden(&window, tab);
+    for view in [View::Overview, View::Channels, View::Assessment, View::Bode] {
+        show(&mut window, view);
+        assert_little_is_hidden(&window, view.name());
     }
     let nominal = drawn(&window, CurveRole::Nominal);
     let view = &state(&window).display.bode;

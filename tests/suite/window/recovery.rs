@@ -19,7 +19,7 @@ fn kept(directory: &Path) -> Vec<PathBuf> {
 /// A window whose decisions are not saved, and are kept.
 fn with_decisions(opened: Opened, directory: &Path) -> Window {
     let mut window = window_with(opened, setup(directory));
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     wait_until(&mut window, "the decisions are kept", |_| !kept(directory).is_empty());
     window
@@ -71,7 +71,7 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     let mut lost = window_with(load_any(&dataset).unwrap(), setup(directory.path()));
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut lost, &path);
-    lost.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    slide(&mut lost, "α gains", 12.5);
     settle(&mut lost);
     drop(lost);
 

@@ -46,7 +46,7 @@ fn a_file_that_changes_is_told_and_reloaded_and_undo_goes_back_across_it() {
     let copy = Copy::new();
     let mut window = copy.window();
     let before = state(&window).dataset().name().to_owned();
-    window.get_by_role_and_label(Role::Slider, "α gains slider").set_value_accesskit(12.5);
+    slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     let received = state(&window).results.received;
     copy.rename("renewed");

@@ -1,6 +1,6 @@
 //! The views: what each shows, by its controls.
 
-use gdcm::view::arrangement::{Arrangement, Preset, View};
+use gdcm::view::arrangement::{Arrangement, View, ViewGroup};
 use gdcm::view::command::Command as Action;
 use gdcm::view::display::Preferences;
 use gdcm::view::views::poles;
@@ -25,36 +25,39 @@ pub(super) fn show(window: &mut Window, view: View) {
 #[test]
 fn every_view_has_a_tab_and_a_click_brings_it_to_the_front() {
     let mut window = window();
-    for view in View::ALL {
-        click(&mut window, view.name());
-        assert!(state(&window).display.arrangement.is_shown(view), "{view:?}");
+    for group in ViewGroup::ALL {
+        click(&mut window, &format!("Views: {}", group.name()));
+        for view in group.views() {
+            click(&mut window, view.name());
+            assert_eq!(state(&window).display.arrangement.view(), view);
+        }
     }
 }
 
 #[test]
 fn controls_of_plots_side_by_side_have_names_of_their_own() {
     let mut window = window();
-    for view in [View::Error, View::Across] {
-        give(&mut window, Action::SplitView(view, egui_tiles::LinearDir::Horizontal));
-    }
-    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
-    for name in ["Frequency axis", "Value axis", "Lower end of the band", "Upper end of the band"] {
-        let labels: Vec<String> =
-            window.query_all_by_label_contains(name).filter_map(|node| node.accesskit_node().label()).collect();
-        let unique: std::collections::BTreeSet<&String> = labels.iter().collect();
-        assert_eq!(unique.len(), labels.len(), "{labels:?}");
-        assert!(labels.len() >= 3, "{name}: {labels:?}");
+    for beside in [View::Error, View::Across] {
+        give(&mut window, Action::ShowBeside(Some(beside)));
+        wait_until(&mut window, "the responses", |window| beside == View::Error || state(window).across().is_some());
+        for name in ["Frequency axis", "Value axis", "Lower end of the band", "Upper end of the band"] {
+            let labels: Vec<String> =
+                window.query_all_by_label_contains(name).filter_map(|node| node.accesskit_node().label()).collect();
+            let unique: std::collections::BTreeSet<&String> = labels.iter().collect();
+            assert_eq!(unique.len(), labels.len(), "{labels:?}");
+            assert!(labels.len() >= 2, "{name}: {labels:?}");
+        }
     }
 }
 
 #[test]
 fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
-    give(&mut window, Action::SplitView(View::Poles, egui_tiles::LinearDir::Horizontal));
+    give(&mut window, Action::ShowBeside(Some(View::Poles)));
     let kept = Preferences::of(&state(&window).display);
     let mut other = window_with(example(), Setup { preferences: kept, ..Setup::default() });
     assert_eq!(state(&other).display.arrangement, state(&window).display.arrangement);
-    give(&mut other, Action::Arrange(Preset::Stacked));
+    give(&mut other, Action::ResetLayout);
     assert_eq!(state(&other).display.arrangement, Arrangement::default());
 }
 

@@ -214,7 +214,7 @@ impl Hue {
             Self::Corrected => 0x1d8a47,
             Self::Rejected => 0x646c79,
             Self::Accent => 0x1b67a6,
-            Self::Warning => 0x8f5400,
+            Self::Warning => 0xa9410a,
             Self::Good => 0x187049,
             Self::OfAirspeed(step) => {
                 return mixed(Self::Perturbed.on_paper(), Self::Identified.on_paper(), f64::from(step) / 255.0);
@@ -271,8 +271,6 @@ pub enum Dash {
     /// One unbroken line.
     #[default]
     Solid,
-    /// Two lines with the background between them, which another line may fill.
-    Double,
     /// Long dashes.
     Long,
     /// Short dashes.
@@ -289,7 +287,7 @@ impl Dash {
     /// Lengths of dashes and gaps in turn \[pt\]; none of a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
-            Self::Solid | Self::Double => &[],
+            Self::Solid => &[],
             Self::Long => &[7.0, 2.0],
             Self::Short => &[3.0, 1.6],
             Self::Dotted => &[0.9, 1.7],
@@ -328,21 +326,6 @@ impl Stroke {
 
     /// Width on paper as a part of that in the window.
     const PRINTED: f64 = 0.55;
-    /// Of a double line, the part that is background.
-    pub const GROUND_OF_DOUBLE: f64 = 0.42;
-
-    /// The lines that are drawn for it, one over another.
-    pub fn layers(self) -> Vec<Self> {
-        match self.dash {
-            Dash::Double => {
-                vec![
-                    Self::solid(self.color, self.width_pt),
-                    Self::solid(Color::WHITE, Self::GROUND_OF_DOUBLE * self.width_pt),
-                ]
-            }
-            _ => vec![self],
-        }
-    }
 }
 
 impl Drawing {

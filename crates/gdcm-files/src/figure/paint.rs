@@ -92,8 +92,7 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
         let start = MARGIN + x;
         shapes.extend(match entry.sample {
             Sample::Line(stroke) => {
-                let line = |stroke| Shape::line([[start, y], [start + sample, y]], stroke);
-                stroke.layers().into_iter().map(line).collect()
+                vec![Shape::line([[start, y], [start + sample, y]], stroke)]
             }
             Sample::Dot { shape, color, filled } => dot_shapes([start + 0.5 * sample, y], (shape, 1.0), color, filled),
             Sample::Ground(color) => vec![Shape::rectangle(Area::new(start, y - 3.0, sample, 6.0), Some(color), None)],
@@ -286,9 +285,7 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
         curve.points().map(|point| placed.at(point).filter(|place| place.iter().all(|c| c.abs() < 1e6))).collect();
     let runs = points.split(Option::is_none).map(|run| run.iter().copied().flatten().collect::<Vec<[f64; 2]>>());
     let lines = runs.filter(|run| run.len() > 1);
-    let lines: Vec<Vec<[f64; 2]>> = lines.map(|run| simplified(&run, TOLERANCE)).collect();
-    let layers = curve.stroke.layers().into_iter();
-    layers.flat_map(|stroke| lines.iter().map(move |line| Shape::line(line.clone(), stroke))).collect()
+    lines.map(|run| Shape::line(simplified(&run, TOLERANCE), curve.stroke)).collect()
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {

@@ -32,15 +32,6 @@ pub enum Role {
 }
 
 impl Role {
-    /// The name where there is little room.
-    pub fn short_name(self) -> &'static str {
-        match self {
-            Self::Representative => "repres.",
-            Self::IdentifiedRepresentative => "ident. rep.",
-            _ => self.name(),
-        }
-    }
-
     /// Every role of one condition, in the order of a legend.
     pub const ALL: [Self; 9] = [
         Self::Nominal,
@@ -77,8 +68,8 @@ impl Role {
             Self::Nominal => "nominal",
             Self::Perturbed => "perturbed",
             Self::Representative => "representative",
-            Self::Identified => "identified",
-            Self::IdentifiedRepresentative => "identified representative",
+            Self::Identified => "other identified",
+            Self::IdentifiedRepresentative => "identified",
             Self::Corrected => "corrected",
             Self::Scheduled => "scheduled",
             Self::WithoutLeads => "without leads",
@@ -90,6 +81,7 @@ impl Role {
     /// The name as one word of a command.
     pub fn word(self) -> &'static str {
         match self {
+            Self::Identified => "identified",
             Self::IdentifiedRepresentative => "identified-representative",
             Self::WithoutLeads => "without-leads",
             _ => self.name(),
@@ -107,14 +99,14 @@ impl Role {
         let line = |hue, width_pt, dash| Stroke { color: Color::of(hue), width_pt, dash };
         match self.shown(rejected) {
             Self::Nominal if rejected => line(Hue::Nominal, 1.3, Dash::Dotted),
-            Self::Nominal => line(Hue::Nominal, 1.6, Dash::DashDot),
-            Self::Perturbed => Stroke::solid(Color::of(Hue::Perturbed).tint(80), 1.0),
-            Self::Representative => line(Hue::Perturbed, 2.8, Dash::Solid),
+            Self::Nominal => line(Hue::Nominal, 1.8, Dash::DashDot),
+            Self::Perturbed => Stroke::solid(Color::of(Hue::Perturbed).tint(80), 0.8),
+            Self::Representative => line(Hue::Perturbed, 1.4, Dash::Solid),
             Self::Identified => line(Hue::Identified, 1.2, Dash::Short),
-            // Wide and open: the corrected curve that is to lie on it fills it, so that both are seen where they agree.
-            Self::IdentifiedRepresentative => line(Hue::Identified, 4.6, Dash::Double),
-            Self::Corrected => line(Hue::Corrected, 2.2, Dash::Solid),
-            Self::Scheduled => line(Hue::Corrected, 2.2, Dash::Long),
+            // Wide: it is seen below the corrected curve that is to lie on it.
+            Self::IdentifiedRepresentative => line(Hue::Identified, 4.0, Dash::Solid),
+            Self::Corrected => line(Hue::Corrected, 2.0, Dash::Solid),
+            Self::Scheduled => line(Hue::Corrected, 1.6, Dash::Long),
             Self::WithoutLeads => line(Hue::Corrected, 1.4, Dash::ShortDashDot),
             Self::Rejected => line(Hue::Rejected, 1.0, Dash::Dotted),
             Self::OfAirspeed(step) => line(Hue::OfAirspeed(step), 1.8, Dash::Solid),

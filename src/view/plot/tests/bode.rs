@@ -307,19 +307,24 @@ fn every_size_can_be_drawn() {
 }
 
 #[test]
-fn the_legend_folds_at_a_click_on_its_head_without_rejecting_a_curve() {
+fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
     use egui_kittest::kittest::Queryable;
     let mut harness = harness(three_curves());
-    harness.get_by_label("Show nominal");
-    let head = harness.get_by_label("Fold the legend").rect();
-    click(&mut harness, head.center());
-    harness.get_by_label("Unfold the legend");
-    assert!(harness.query_by_label("Show nominal").is_none());
-    assert_eq!(harness.state().events, []);
+    let chip = harness.get_by_label("Show nominal").rect().center();
+    for (modifiers, event) in [
+        (Modifiers::ALT, BodeEvent::RoleAlone(Role::Nominal)),
+        (Modifiers::SHIFT, BodeEvent::RoleRaised(Role::Nominal)),
+    ] {
+        harness.event(Event::ModifiersChanged(modifiers));
+        press(&mut harness, chip, PointerButton::Primary, modifiers);
+        harness.run();
+        harness.event(Event::ModifiersChanged(Modifiers::NONE));
+        assert_eq!(harness.state().events.last(), Some(&event));
+    }
 }
 
 #[test]
-fn every_role_in_the_legend_is_a_switch_and_a_hidden_curve_is_neither_drawn_nor_meant() {
+fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_nor_meant() {
     use egui_kittest::kittest::Queryable;
     let mut harness = harness(three_curves());
     harness.get_by_label("Show perturbed").click();

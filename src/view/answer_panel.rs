@@ -1,0 +1,233 @@
+//! The right side of the window: verdict, result, matrix, the response in focus, settings in one line, and the way to export.
+
+use egui::{Align, Button, CornerRadius, Frame, Key, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
+
+use gdcm_core::correction::GainSource;
+use gdcm_core::study::{PhaseCorrection, setting};
+use gdcm_core::units::number;
+
+use super::palette::{TITLE_SIZE, medium};
+use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
+use super::{
+    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch, painted_text,
+    region_ui, response_card, result_panel, settings_panel,
+};
+
+/// Space around everything \[pt\].
+const PADDING: f32 = 12.0;
+/// Height of the line of settings \[pt\].
+const LINE: f32 = 36.0;
+/// Height of the row of the export \[pt\].
+const FOOT: f32 = 48.0;
+/// The card of the response in focus needs a window of this height \[pt\].
+const LEAST_WITH_CARD: f32 = 860.0;
+/// In a lower window the result is one line \[pt\].
+const LEAST_WITH_RESULT: f32 = 600.0;
+
+/// All of it, from top to bottom.
+pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let verdict = Verdict::of(state);
+    let foot = Frame::new().inner_margin(Margin::ZERO);
+    Panel::bottom("export").frame(foot).exact_size(LINE + FOOT).show(ui, |ui| {
+        region_ui(ui, Region::Settings, |ui| settings_line_ui(ui, state, palette, commands));
+        export_ui(ui, state, &verdict, palette, commands);
+    });
+    let window = ui.ctx().content_rect().height();
+    let frame = Frame::new().inner_margin(Margin { left: PADDING as i8, right: PADDING as i8, top: 8, bottom: 4 });
+    frame.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        region_ui(ui, Region::Verdict, |ui| verdict_ui(ui, &verdict, palette, commands));
+        ui.add_space(8.0);
+        if state.display.settings_open {
+            ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]).show(ui, |ui| {
+                settings_panel::settings_ui(ui, state, palette, commands);
+            });
+            return;
+        }
+        let is_folded = window < LEAST_WITH_RESULT;
+        region_ui(ui, Region::Result, |ui| result_panel::result_ui(ui, state, is_folded, palette, commands));
+        ui.add_space(8.0);
+        let card = if window >= LEAST_WITH_CARD { response_card::HEIGHT + 12.0 } else { 0.0 };
+        matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
+        if card > 0.0 {
+            ui.add_space(12.0);
+            response_card::card_ui(ui, state, palette);
+        }
+    });
+}
+
+/// Two rows and one step.
+fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    let (ground, mark) = match verdict.is_met() {
+        true => (palette.good_ground, palette.good),
+        false if verdict.rows[0].here.is_none() && verdict.caution.is_none() => (palette.raised, palette.line),
+        false => (palette.warning_ground, palette.warning),
+    };
+    let frame = Frame::new().fill(ground).corner_radius(CornerRadius::same(8));
+    let frame = frame.inner_margin(Margin { left: 16, right: 12, top: 6, bottom: 8 });
+    let shown = frame.show(ui, |ui| {
+        ui.set_width(ui.available_width());
+        heads_ui(ui, verdict, palette);
+        for row in &verdict.rows {
+            row_ui(ui, row, verdict.is_met(), palette);
+        }
+        ui.add_space(4.0);
+        steps_ui(ui, verdict, palette, commands);
+    });
+    let edge = shown.response.rect.with_max_x(shown.response.rect.left() + 4.0);
+    ui.painter().rect_filled(edge, CornerRadius { nw: 8, sw: 8, ne: 0, se: 0 }, mark);
+}
+
+/// Where the counts and the words of the rows begin \[pt from their left edge\].
+const COLUMNS: [f32; 2] = [46.0, 106.0];
+
+fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
+    let small = egui::FontId::proportional(SMALL_SIZE);
+    let here = format!("condition {}", verdict.condition);
+    painted_text(ui, rect, COLUMNS[0], &here, small.clone(), palette.dim_text);
+    painted_text(ui, rect, -0.01, "all", small, palette.dim_text);
+}
+
+fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
+    named(response.clone(), Role::Label, row.sentence());
+    let body = egui::FontId::proportional(BODY_SIZE);
+    painted_text(ui, rect, 0.0, row.name, body.clone(), palette.dim_text);
+    let is_missed = row.here.is_some_and(|[met, held]| met < held);
+    let color = match (is_all_met, is_missed) {
+        (true, _) => palette.good,
+        (_, true) => palette.warning,
+        _ => palette.text,
+    };
+    painted_text(ui, rect, COLUMNS[0], &VerdictRow::count(row.here), medium(TITLE_SIZE), color);
+    let everywhere = VerdictRow::count(row.everywhere);
+    let all = painted_text(ui, rect, -0.01, &everywhere, body.clone(), palette.dim_text);
+    let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
+    let words = super::controls::elided(ui, &row.words, room, BODY_SIZE);
+    painted_text(ui, rect, COLUMNS[1], &words, body, palette.text);
+    response.on_hover_text(row.sentence());
+}
+
+fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(28.0);
+        if let Some(caution) = &verdict.caution {
+            let text = palette.small_warning(format!("⚠ {caution}")).size(BODY_SIZE);
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(caution);
+        }
+        let mut steps = verdict.steps.iter();
+        // What exports is the primary button at the foot.
+        let first = steps.next().filter(|step| step.command != export());
+        if let Some(step) = first {
+            primary_ui(ui, step, palette, commands);
+        }
+        for step in steps {
+            link_ui(ui, step, palette, commands);
+        }
+        let reasons = Command::ShowSheet(Some(Sheet::Reasons));
+        let is_offered = verdict.steps.iter().any(|step| step.command == reasons);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if !is_offered && verdict.reasons > 0 {
+                let step = Step { label: format!("{} notes", verdict.reasons), command: reasons };
+                link_ui(ui, &step, palette, commands);
+            }
+            if !verdict.note.is_empty() {
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    ui.add(egui::Label::new(palette.small(&verdict.note)).truncate());
+                });
+            }
+        });
+    });
+}
+
+/// The one primary button of the window; Enter on it does it.
+fn primary_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
+    let label = RichText::new(&step.label).font(medium(BODY_SIZE)).color(palette.on_accent());
+    let button = ui.add(Button::new(label).fill(palette.accent).min_size(vec2(0.0, 28.0)));
+    if named(button, Role::Button, step.label.as_str()).clicked() {
+        commands.push(step.command.clone());
+    }
+}
+
+fn link_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
+    let label = RichText::new(&step.label).color(palette.accent);
+    let button = ui.add(Button::new(label).frame(false).min_size(vec2(0.0, 28.0)));
+    if named(button, Role::Button, step.label.as_str()).clicked() {
+        commands.push(step.command.clone());
+    }
+}
+
+/// The settings in one line; a click opens them in place, over matrix and card.
+fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let is_open = state.display.settings_open;
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
+    ui.painter().hline(rect.x_range(), rect.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    if response.hovered() {
+        ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), 0.0, palette.raised);
+    }
+    let inner = rect.shrink2(vec2(PADDING, 0.0));
+    let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
+    let words = settings_words(state);
+    let shown = super::controls::elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
+    let small = egui::FontId::proportional(SMALL_SIZE);
+    painted_text(ui, inner, title.right() - inner.left() + 10.0, &shown, small, palette.dim_text);
+    chevron(ui, pos2(inner.right() - 5.0, inner.center().y), is_open, palette);
+    let response = named_switch(response, Role::Button, is_open, "Settings");
+    let is_left = is_open && ui.ctx().memory(|memory| memory.focused().is_none());
+    let escape = is_left && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape));
+    if response.clicked() || escape {
+        commands.push(Command::ShowSettings(!is_open));
+    }
+    response.on_hover_text(format!("{words}. Click, or Ctrl+comma: {} them", if is_open { "fold" } else { "open" }));
+}
+
+/// A small arrow: to the right where what it stands beside is folded, down where it is open.
+pub(super) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
+    let turn = |x: f32, y: f32| if is_open { center + vec2(-y, x) } else { center + vec2(x, y) };
+    let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
+    ui.painter().line(points, egui::Stroke::new(1.3, palette.dim_text));
+}
+
+/// "α 1 · 0.5–12 rad/s · delays · representatives".
+fn settings_words(state: &State) -> String {
+    let settings = &state.study.settings;
+    let [gains, delays] = [settings.alpha_gain, settings.alpha_delay].map(number);
+    let alpha = if gains == delays { format!("α {gains}") } else { format!("α {gains}, {delays}") };
+    let phase = match settings.phase {
+        PhaseCorrection::None => "gains alone",
+        PhaseCorrection::Delay => "delays",
+        PhaseCorrection::Lead => "leads",
+    };
+    let mut words = format!("{alpha} · {} · {phase}", band_words(state));
+    if settings.gain_source == GainSource::MeanOfPairs || state.display.is_wide {
+        words.push_str(" · ");
+        words.push_str(&setting::GAIN_SOURCE.text(setting::GAIN_SOURCE.value(settings)));
+    }
+    words
+}
+
+/// The way to the export form, always in sight; primary where nothing else is to be done.
+fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), FOOT), Sense::hover());
+    ui.painter().hline(rect.x_range(), rect.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    let inner = rect.shrink2(vec2(PADDING, 10.0));
+    let is_ready = state.analysis().is_some();
+    let is_primary = verdict.steps.first().is_some_and(|step| step.command == export());
+    let color = if is_primary { palette.on_accent() } else { palette.text };
+    let button = Button::new(RichText::new("Export corrections…").font(medium(BODY_SIZE)).color(color));
+    let button = if is_primary { button.fill(palette.accent) } else { button };
+    let place = Rect::from_min_size(inner.min, vec2(140.0, 28.0));
+    region_ui(ui, Region::Export, |ui| {
+        ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
+            let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
+            if export_button.on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)").clicked() {
+                commands.push(export());
+            }
+        });
+    });
+    let schedule = state.analysis().is_some_and(|analysis| analysis.schedule.is_ok());
+    let count = state.dataset().conditions().len();
+    let what = format!("{count} conditions{}", if schedule { ", schedule" } else { "" });
+    painted_text(ui, inner, -0.01, &what, egui::FontId::proportional(BODY_SIZE), palette.dim_text);
+}

@@ -1,0 +1,336 @@
+//! Whether the corrected model holds, and the one thing to do where it does not.
+
+use gdcm_core::correction::{ConflictKind, Remedy, Unmatched};
+use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_core::response::{LeadFilter, median};
+use gdcm_core::study::{ConditionAnalysis, Edit, PhaseCorrection, SignRole, Value, setting};
+use gdcm_core::units::{number, s_to_ms, signed, telling};
+
+use super::{Command, FormKind, Sheet, State, turn_entry};
+
+/// Whether gain and phase of the held responses are met, here and in every condition, and what to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The condition that it is of.
+    pub condition: ConditionId,
+    /// Of gains and of phases.
+    pub rows: [VerdictRow; 2],
+    /// The one thing to do, and what may be done in its place.
+    pub steps: Vec<Step>,
+    /// What is said beside the steps.
+    pub note: String,
+    /// What has to be known before the result is used: "Price: +21 dB above 12 rad/s".
+    pub caution: Option<String>,
+    /// How many sentences the list of reasons has.
+    pub reasons: usize,
+}
+
+/// Gains or phases of the held responses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VerdictRow {
+    /// "Gain" or "Phase".
+    pub name: &'static str,
+    /// How many of the held responses are matched, of how many; none where there is no result.
+    pub here: Option<[usize; 2]>,
+    /// The same of all conditions that have a result.
+    pub everywhere: Option<[usize; 2]>,
+    /// "matched", "lags by ≈ 66 ms".
+    pub words: String,
+    /// Whether all that is asked for is met.
+    pub is_met: bool,
+}
+
+/// Something that can be done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// What its button says.
+    pub label: String,
+    /// What a click does.
+    pub command: Command,
+}
+
+impl Step {
+    fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
+        Self { label: label.into(), command: command.into() }
+    }
+
+    /// The way to what explains the result.
+    fn reasons(label: &str) -> Self {
+        Self::new(label, Command::ShowSheet(Some(Sheet::Reasons)))
+    }
+}
+
+impl VerdictRow {
+    fn without_result(name: &'static str, words: String) -> Self {
+        Self { name, here: None, everywhere: None, words, is_met: false }
+    }
+
+    /// "5 of 5".
+    pub fn count(counts: Option<[usize; 2]>) -> String {
+        counts.map_or("–".to_owned(), |[met, held]| format!("{met} of {held}"))
+    }
+
+    /// All of it as one sentence, for screen readers.
+    pub fn sentence(&self) -> String {
+        let [here, everywhere] = [self.here, self.everywhere].map(Self::count);
+        format!("{}: {here} {}, of all conditions {everywhere}", self.name, self.words)
+    }
+}
+
+impl Verdict {
+    /// Of the condition shown.
+    pub fn of(state: &State) -> Self {
+        let condition = state.condition().id();
+        let nothing = |gain: String, steps: Vec<Step>| Self {
+            condition,
+            rows: [VerdictRow::without_result("Gain", gain), VerdictRow::without_result("Phase", String::new())],
+            steps,
+            note: String::new(),
+            caution: None,
+            reasons: 0,
+        };
+        match state.outcome() {
+            None => nothing(state.results.absence().to_owned(), Vec::new()),
+            Some(Err(failure)) => Self { caution: Some(failure.to_string()), ..nothing("no result".to_owned(), Vec::new()) },
+            Some(Ok(shown)) => Self::of_result(state, shown),
+        }
+    }
+
+    fn of_result(state: &State, shown: &ConditionAnalysis) -> Self {
+        let reasons = super::remarks_shown(state, shown).len();
+        let (steps, note) = steps(state, shown);
+        let caution = caution(state, shown);
+        Self { condition: shown.condition.id(), rows: rows(state, shown), steps, note, caution, reasons }
+    }
+
+    /// Whether gains and phases are met.
+    pub fn is_met(&self) -> bool {
+        self.rows.iter().all(|row| row.is_met)
+    }
+}
+
+/// How many held responses have their gain and their phase, of how many.
+fn counts(shown: &ConditionAnalysis) -> [[usize; 2]; 2] {
+    let held = shown.held().marked().count();
+    [&shown.gains, &shown.delays].map(|solution| [held - solution.unmatched.len().min(held), held])
+}
+
+fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
+    let phase = state.study.settings.phase;
+    let [gain, delay] = counts(shown);
+    let results = state.analysis().map(|analysis| analysis.conditions.values().filter_map(|of| of.as_ref().ok()));
+    let everywhere = results.map(|results| {
+        let none = [[0; 2]; 2];
+        results.map(counts).fold(none, |sum, of| [0, 1].map(|row| [0, 1].map(|at| sum[row][at] + of[row][at])))
+    });
+    let is_corrected = phase != PhaseCorrection::None;
+    let is_any_held = gain[1] > 0;
+    let is_phase_met = is_corrected && shown.delays.matched;
+    let gains = VerdictRow {
+        name: "Gain",
+        here: Some(gain),
+        everywhere: everywhere.map(|of| of[0]),
+        words: if is_any_held { gain_words(state, shown) } else { "fitted, none held".to_owned() },
+        is_met: is_any_held && shown.gains.matched,
+    };
+    let phases = VerdictRow {
+        name: "Phase",
+        here: is_corrected.then_some(delay),
+        everywhere: everywhere.map(|of| of[1]).filter(|_| is_corrected),
+        words: match (is_corrected, is_any_held) {
+            (false, _) => "not corrected".to_owned(),
+            (true, false) => "fitted, none held".to_owned(),
+            (true, true) if is_phase_met => format!("matched, {}", band_words(state)),
+            (true, true) => lag_words(&shown.delays.unmatched),
+        },
+        is_met: is_any_held && is_phase_met,
+    };
+    [gains, phases]
+}
+
+/// "0.5–12 rad/s".
+pub(super) fn band_words(state: &State) -> String {
+    let band = state.study.settings.band;
+    format!("{}–{} rad/s", number(band.min()), number(band.max()))
+}
+
+fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
+    let Some(miss) = shown.gains.unmatched.first() else { return "matched".to_owned() };
+    match miss.why.kind {
+        ConflictKind::AboveUpper { .. } | ConflictKind::BelowLower { .. } | ConflictKind::TooFarApart { .. } => {
+            format!("{} stops at a bound", joined(&state.dataset().pair_name(miss.pair)))
+        }
+        ConflictKind::Loop { .. } | ConflictKind::Unclear => format!("{} disagree", miss.why.entries.len().max(2)),
+    }
+}
+
+/// A name that is not broken at its end of line.
+pub(super) fn joined(name: &str) -> String {
+    name.replace(' ', "\u{a0}")
+}
+
+/// "lags by ≈ 66 ms" where all want about the same, as the remark on a common lead understands it; "lags by 20 to 110 ms" otherwise.
+fn lag_words(missed: &[Unmatched]) -> String {
+    let mut left_ms: Vec<f64> = missed.iter().map(|missed| s_to_ms(missed.excess)).collect();
+    let (least, most) = left_ms.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
+    let middle = median(&mut left_ms);
+    let verb = if middle >= 0.0 { "lags" } else { "leads" };
+    let [low, high] = if middle >= 0.0 { [least, most] } else { [-most, -least] }.map(|at| telling(at, 0));
+    if low == high {
+        format!("{verb} by {low} ms")
+    } else if most - least <= 0.5 * middle.abs() {
+        format!("{verb} by ≈ {} ms", telling(middle.abs(), 0))
+    } else {
+        format!("{verb} by {low} to {high} ms")
+    }
+}
+
+/// What to do, the first of it at once; and what is said beside it.
+fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
+    let condition = shown.condition.id();
+    let alone = |steps: Vec<Step>| (steps, String::new());
+    if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
+        let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
+        return (vec![Step::new(label, command), Step::reasons("Why?")], "its sign seems to be the other one".to_owned());
+    }
+    let open = state.open_suggestions(shown);
+    if !open.is_empty() {
+        let reject = Step::new(format!("Reject {} suggested", open.len()), Edit::reject_physics(condition, &open));
+        return (vec![reject], format!("of {} models, first", state.condition().bundle(BundleKind::Physics).len()));
+    }
+    if shown.held().marked().next().is_none() {
+        return alone(vec![Step::new("Hold the on-axis responses", Edit::ConstrainOnAxis)]);
+    }
+    if !shown.gains.matched {
+        return alone(gain_steps(state, shown));
+    }
+    match state.study.settings.phase {
+        PhaseCorrection::None => alone(vec![Step::new("Use delays", setting::PHASE.to(PhaseCorrection::Delay))]),
+        PhaseCorrection::Delay if !shown.delays.matched => {
+            let leads = Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead));
+            alone(vec![leads, Step::reasons("Find the cause first")])
+        }
+        PhaseCorrection::Lead if !shown.delays.matched => {
+            let free = shown.delays.remedy.iter().flat_map(|remedy| &remedy.free).next();
+            let free = free.map(|pair| free_step(state, *pair));
+            alone(free.into_iter().chain([Step::reasons("Why?")]).collect())
+        }
+        PhaseCorrection::Lead => {
+            alone(vec![Step::new("Export corrections…", export()), Step::reasons("Find the cause")])
+        }
+        PhaseCorrection::Delay => alone(vec![Step::new("Export corrections…", export())]),
+    }
+}
+
+/// The command that opens the form of the export.
+pub(super) fn export() -> Command {
+    Command::ShowForm(Some(FormKind::Export))
+}
+
+fn free_step(state: &State, pair: Pair) -> Step {
+    Step::new(format!("Free {}", joined(&state.dataset().pair_name(pair))), Edit::Hold(pair, false))
+}
+
+/// The bound that would do, where one would; then the response to be freed.
+fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
+    let Some(remedy) = &shown.gains.remedy else { return vec![Step::reasons("Why?")] };
+    let widen = widened(remedy, shown).map(|range| Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
+    let free = remedy.free.first().map(|pair| free_step(state, *pair));
+    widen.into_iter().chain(free).chain([Step::reasons("Why?")]).collect()
+}
+
+fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
+    let bounds = shown.gain_bounds();
+    let upper = remedy.upper.map(|upper| [bounds.lower, upper]);
+    upper.or(remedy.lower.map(|lower| [lower, bounds.upper])).map(Value::Range)
+}
+
+/// The price of the leads: what the filters of the held response that pays most add above the band (M15.6).
+fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+    let leads = &shown.compensated.as_ref()?.leads;
+    let added_db = |pair: Pair| -> f64 {
+        let filters = gdcm_core::correction::Channel::of(pair).map(|channel| leads.filters()[channel]);
+        filters.into_iter().flatten().map(LeadFilter::gain_at_infinity_db).sum()
+    };
+    let most_db = shown.held().marked().map(added_db).fold(0.0, f64::max);
+    let top = number(state.study.settings.band.max());
+    (most_db > 0.05).then(|| format!("Price: {} dB above {top} rad/s", signed(most_db, 0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use gdcm_core::study::{Engine, Study, Unobserved};
+
+    use super::*;
+
+    fn state_of(decide: &[Edit]) -> State {
+        let mut study = Study::new(gdcm_files::embedded_example().expect("it is in the program").dataset);
+        decide.iter().for_each(|edit| study.apply(edit).expect("the example takes it"));
+        let mut state = State::new(study.clone(), String::new(), Vec::new());
+        state.display.condition = ConditionId(10);
+        let analysis = Engine::default().analyze(&study, &Unobserved).expect("nothing stops it");
+        state.results.analysis = Some(Arc::new(analysis));
+        state
+    }
+
+    fn reject() -> Edit {
+        let state = state_of(&[]);
+        let shown = state.shown().expect("condition 10 has a result");
+        Edit::reject_physics(ConditionId(10), &state.open_suggestions(shown))
+    }
+
+    fn labels(verdict: &Verdict) -> Vec<&str> {
+        verdict.steps.iter().map(|step| step.label.as_str()).collect()
+    }
+
+    #[test]
+    fn suggested_models_are_to_be_rejected_before_anything_else() {
+        let verdict = Verdict::of(&state_of(&[]));
+        assert_eq!(labels(&verdict), ["Reject 3 suggested"]);
+        assert_eq!(verdict.note, "of 19 models, first");
+    }
+
+    #[test]
+    fn gains_alone_do_not_make_a_verdict_good() {
+        let verdict = Verdict::of(&state_of(&[reject()]));
+        let [gain, phase] = &verdict.rows;
+        assert_eq!((gain.here, gain.everywhere, gain.words.as_str()), (Some([5, 5]), Some([55, 55]), "matched"));
+        assert_eq!((phase.here, phase.everywhere), (Some([0, 5]), Some([0, 55])));
+        // The medians of D of the example's held responses in condition 10: 56 to 72 ms of lead.
+        assert_eq!(phase.words, "lags by ≈ 66 ms");
+        assert!(!verdict.is_met() && verdict.caution.is_none());
+        assert_eq!(labels(&verdict), ["Use leads", "Find the cause first"]);
+    }
+
+    #[test]
+    fn leads_are_met_and_say_their_price() {
+        let verdict = Verdict::of(&state_of(&[reject(), setting::PHASE.to(PhaseCorrection::Lead)]));
+        assert!(verdict.is_met(), "{verdict:?}");
+        let caution = verdict.caution.as_deref().unwrap_or_default();
+        assert!(caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"), "{caution}");
+        assert_eq!(verdict.steps[0].command, export());
+    }
+
+    #[test]
+    fn where_nothing_is_held_the_on_axis_responses_are_offered() {
+        let pairs: Vec<Pair> = state_of(&[]).dataset().on_axis().marked().collect();
+        let release: Vec<Edit> = pairs.into_iter().map(|pair| Edit::Hold(pair, false)).chain([reject()]).collect();
+        let verdict = Verdict::of(&state_of(&release));
+        assert_eq!(verdict.rows[0].words, "fitted, none held");
+        assert_eq!(labels(&verdict), ["Hold the on-axis responses"]);
+        assert!(!verdict.is_met());
+    }
+
+    #[test]
+    fn a_bound_that_is_in_the_way_can_be_widened() {
+        let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
+        let verdict = Verdict::of(&state_of(&[reject(), bounds]));
+        assert!(!verdict.rows[0].is_met && verdict.rows[0].words.ends_with("stops at a bound"), "{verdict:?}");
+        assert_eq!(labels(&verdict)[0], "Widen the bound");
+        let Command::Edit(widen) = &verdict.steps[0].command else { panic!("{verdict:?}") };
+        let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
+        assert!(Verdict::of(&state_of(&[reject(), bounds, widen.clone()])).rows[0].is_met);
+    }
+}

@@ -61,7 +61,7 @@ fn note_panics() {
 }
 
 fn set_alpha(window: &mut Window, alpha: f64) {
-    slide(&mut window, "α gains", alpha);
+    slide(window, "α gains", alpha);
     window.run_steps(2);
 }
 

@@ -1,9 +1,10 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
+use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
 use gdcm_core::study::{AssessedCorrection, PhaseCorrection};
 
-use super::views::give;
+use super::views::{give, show};
 use super::*;
 use gdcm::view::Sheet;
 

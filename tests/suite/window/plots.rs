@@ -2,6 +2,7 @@
 
 use gdcm::view::arrangement::View;
 
+use super::views::show;
 use super::*;
 
 /// A point of the nominal model's curve.

@@ -2,16 +2,14 @@
 
 use std::cmp::Reverse;
 
-use egui::{Context, Event, Id, Key, KeyboardShortcut, Plugin, Popup, RawInput};
+use egui::{Context, Event, Key, KeyboardShortcut, Plugin, Popup, RawInput};
 
 use crate::view::command_table::command_table;
-use crate::view::{Command, Entry, Reach, State};
+use crate::view::{Command, Entry, Reach, State, was_focused};
 
 /// The commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     let focused = ctx.memory(|memory| memory.focused().is_some());
-    let before = Id::unique("was anything focused");
-    let was_focused = ctx.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default::<bool>(before), focused));
     let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
     if !ctx.input(|input| input.events.iter().any(is_key)) {
         return Vec::new();
@@ -19,7 +17,7 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     let has_no_focus = !focused && !ctx.egui_wants_keyboard_input();
     let is_free = has_no_focus && state.forms.shown.is_none() && !Popup::is_any_open(ctx);
     // Escape has taken the focus away by now: where there was one, the key was the field's.
-    let is_left_to_field = |keys: &KeyboardShortcut| was_focused && keys.logical_key == Key::Escape;
+    let is_left_to_field = |keys: &KeyboardShortcut| was_focused(ctx) && keys.logical_key == Key::Escape;
     let is_given = |entry: &Entry| {
         let is_within_reach = entry.reach == Reach::Everywhere || is_free;
         entry.enabled && is_within_reach && !entry.shortcuts.iter().any(is_left_to_field)

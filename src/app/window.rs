@@ -293,7 +293,9 @@ impl GdcmApp {
             return assembling_ui(ui, bench, palette, commands);
         }
         if state.on_start_page {
-            CentralPanel::default().frame(Frame::new()).show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
+            CentralPanel::default()
+                .frame(Frame::new())
+                .show(ui, |ui| start_page::start_ui(ui, state, palette, commands));
             return;
         }
         let is_wide = state.display.is_wide;
@@ -329,9 +331,12 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let most = 0.45 * ui.available_height();
-                ScrollArea::vertical().id_salt("conditions").max_height(most).auto_shrink([false, true]).show(ui, |ui| {
-                    conditions_panel::conditions_ui(ui, state, palette, commands);
-                });
+                ScrollArea::vertical().id_salt("conditions").max_height(most).auto_shrink([false, true]).show(
+                    ui,
+                    |ui| {
+                        conditions_panel::conditions_ui(ui, state, palette, commands);
+                    },
+                );
                 ui.separator();
                 models_panel::models_ui(ui, state, palette, commands);
             });

@@ -1,6 +1,8 @@
 //! The right side of the window: verdict, result, matrix, the response in focus, settings in one line, and the way to export.
 
-use egui::{Align, Button, CornerRadius, Frame, Key, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
+use egui::{
+    Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2,
+};
 
 use gdcm_core::correction::GainSource;
 use gdcm_core::study::{PhaseCorrection, setting};
@@ -10,7 +12,7 @@ use super::palette::{TITLE_SIZE, medium};
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{
     BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch, painted_text,
-    region_ui, response_card, result_panel, settings_panel,
+    region_ui, response_card, result_panel, settings_panel, take_escape,
 };
 
 /// Space around everything \[pt\].
@@ -174,9 +176,7 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     painted_text(ui, inner, title.right() - inner.left() + 10.0, &shown, small, palette.dim_text);
     chevron(ui, pos2(inner.right() - 5.0, inner.center().y), is_open, palette);
     let response = named_switch(response, Role::Button, is_open, "Settings");
-    let is_left = is_open && ui.ctx().memory(|memory| memory.focused().is_none());
-    let escape = is_left && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, Key::Escape));
-    if response.clicked() || escape {
+    if response.clicked() || (is_open && take_escape(ui.ctx())) {
         commands.push(Command::ShowSettings(!is_open));
     }
     response.on_hover_text(format!("{words}. Click, or Ctrl+comma: {} them", if is_open { "fold" } else { "open" }));
@@ -221,7 +221,10 @@ fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, c
     region_ui(ui, Region::Export, |ui| {
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
             let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
-            if export_button.on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)").clicked() {
+            if export_button
+                .on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)")
+                .clicked()
+            {
                 commands.push(export());
             }
         });

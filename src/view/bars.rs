@@ -1,20 +1,20 @@
 //! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
 
 use egui::{
-    Align, Button, CollapsingHeader, FontId, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar, Modifiers, Rect,
-    RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, UiBuilder, pos2, vec2,
+    Align, Button, CollapsingHeader, FontId, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar, Modifiers,
+    Rect, RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, UiBuilder, pos2, vec2,
 };
 
 use gdcm_core::dataset::{BundleKind, Condition};
 use gdcm_core::study::Assessed;
 
 use super::command_table::command_table;
-use super::records::RecordsState;
 use super::controls::elided;
 use super::palette::medium;
+use super::records::RecordsState;
 use super::{
-    BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words, button_ui,
-    named, painted_text,
+    BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words,
+    button_ui, named, painted_text,
 };
 
 /// Menus, the last step, the state of the document, and the way to every command.

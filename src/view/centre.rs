@@ -1,14 +1,17 @@
 //! The middle of the window: groups of views, the view in front with its title, and the dock below.
 
 use egui::containers::menu::MenuButton;
-use egui::{Align, Button, FontId, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Button, FontId, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui,
+    UiBuilder, pos2, vec2,
+};
 
 use super::answer_panel::chevron;
 use super::palette::{TITLE_SIZE, medium};
 use super::start_page::example_line_ui;
 use super::{
-    BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui,
-    named, named_switch, region_ui,
+    BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui, named,
+    named_switch, region_ui,
 };
 
 /// Height of the bar of the views \[pt\].
@@ -56,9 +59,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         ui.spacing_mut().item_spacing.x = 2.0;
         groups_ui(ui, state, palette, commands);
         ui.add_space(12.0);
-        for view in state.display.arrangement.group().views() {
-            tab_ui(ui, bar, view, state.display.arrangement.view() == view, palette, commands);
-        }
+        tabs_ui(ui, state, bar, palette, commands);
     });
     let rest = inner.with_min_x(left.response.rect.right() + 8.0);
     ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::right_to_left(Align::Center)), |ui| {
@@ -100,6 +101,31 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
+/// The views of the group in front beside one another; one menu of them where there is no room for that.
+fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
+    /// What else stands in the bar \[pt\].
+    const TOOLS: f32 = 130.0;
+    let arrangement = &state.display.arrangement;
+    let width = |view: View| {
+        ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), medium(BODY_SIZE), palette.text).size().x)
+            + 16.0
+    };
+    let room = bar.right() - ui.cursor().left() - TOOLS;
+    if arrangement.group().views().map(width).sum::<f32>() <= room {
+        for view in arrangement.group().views() {
+            tab_ui(ui, bar, view, arrangement.view() == view, palette, commands);
+        }
+        return;
+    }
+    let front = arrangement.view();
+    let text = RichText::new(format!("{} ▾", front.name())).font(medium(BODY_SIZE));
+    let (button, _) = MenuButton::from_button(Button::new(text).frame(false)).ui(ui, |ui| {
+        let views = arrangement.group().views();
+        entries_ui(ui, views.map(|view| (view.name(), Command::ShowView(view))), commands);
+    });
+    named_switch(button, Role::Tab, true, front.name()).on_hover_text("The views of this group");
+}
+
 /// The name of a view, with a line of accent below the one in front.
 fn tab_ui(ui: &mut Ui, bar: Rect, view: View, is_front: bool, palette: &Palette, commands: &mut Vec<Command>) {
     let font = if is_front { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
@@ -122,7 +148,11 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     let arrangement = &state.display.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
         let views = View::ALL.into_iter().filter(|view| *view != arrangement.view());
-        entries_ui(ui, views.map(|view| (format!("{} beside it", view.name()), Command::ShowBeside(Some(view)))), commands);
+        entries_ui(
+            ui,
+            views.map(|view| (format!("{} beside it", view.name()), Command::ShowBeside(Some(view)))),
+            commands,
+        );
         if arrangement.beside().is_some() {
             ui.separator();
             entries_ui(ui, [("One view alone", Command::ShowBeside(None))], commands);
@@ -164,7 +194,9 @@ fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, comma
             tools_ui(ui, state, view, palette, commands);
             let rest = ui.available_rect_before_wrap();
             let layout = Layout::left_to_right(Align::Center);
-            ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| title_ui(ui, state, kind.title, palette));
+            ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| {
+                title_ui(ui, state, kind.title, palette)
+            });
         });
     }
 }

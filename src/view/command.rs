@@ -10,12 +10,12 @@ use gdcm_files::ExportFormat;
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 
 use super::assembling::AssemblingCommand;
+use super::cost_map::MappedCost;
 use super::plot::{Across, FrequencyUnit, Measure};
 use super::records::RecordsCommand;
+use super::start_page::OpensWith;
 use super::views::AssessedFigures;
 use super::views::PairSet;
-use super::cost_map::MappedCost;
-use super::start_page::OpensWith;
 use super::{Bar, CurveCommand, PlotStyle, Sheet, TableKind, View, ViewGroup};
 
 /// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.

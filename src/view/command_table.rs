@@ -274,7 +274,8 @@ fn view_entries(state: &State) -> Vec<Entry> {
     entries.chain(group(menu, 5, themes.map(theme))).collect()
 }
 
-const PARTS: &str = "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers what had the focus in it";
+const PARTS: &str =
+    "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers what had the focus in it";
 
 /// Groups of views, their neighbours, panels and folds.
 fn layout_entries(state: &State) -> Vec<Entry> {
@@ -287,7 +288,8 @@ fn layout_entries(state: &State) -> Vec<Entry> {
     });
     let neighbours = [("Next view", Key::ArrowRight, 1), ("Previous view", Key::ArrowLeft, -1)];
     let neighbours = neighbours.map(|(name, key, by)| {
-        Entry::new(name, "Of the group in front", Command::ShowView(arrangement.neighbour(by))).keys(Modifiers::ALT, key)
+        Entry::new(name, "Of the group in front", Command::ShowView(arrangement.neighbour(by)))
+            .keys(Modifiers::ALT, key)
     });
     let display = &state.display;
     let is_left_open = display.left_open.unwrap_or(display.is_wide);

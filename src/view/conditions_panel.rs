@@ -96,7 +96,9 @@ fn bundle_button_ui(
     if response.hovered() {
         ui.painter().rect_filled(rect, 4.0, palette.raised);
     }
-    let line = |row: usize, size: f32| Rect::from_min_size(rect.min + vec2(4.0, 4.0 + 17.0 * row as f32), vec2(rect.width(), size));
+    let line = |row: usize, size: f32| {
+        Rect::from_min_size(rect.min + vec2(4.0, 4.0 + 17.0 * row as f32), vec2(rect.width(), size))
+    };
     let small = FontId::proportional(SMALL_SIZE);
     painted_text(ui, line(0, 17.0), 0.0, name, medium(BODY_SIZE), palette.text);
     painted_text(ui, line(1, 17.0), 0.0, kept, small.clone(), palette.dim_text);
@@ -232,7 +234,10 @@ impl<'a> Map<'a> {
         };
         painted_text(ui, lines[0], 0.0, of, small.clone(), palette.dim_text);
         painted_text(ui, lines[1], 0.0, "left magnitude, right phase", small.clone(), palette.dim_text);
-        let bar = Rect::from_min_max(pos2(rect.right() - 76.0, rect.top() + 5.0), pos2(rect.right() - 4.0, rect.top() + 11.0));
+        let bar = Rect::from_min_max(
+            pos2(rect.right() - 76.0, rect.top() + 5.0),
+            pos2(rect.right() - 4.0, rect.top() + 11.0),
+        );
         let most = HEAT_COSTS[HEAT_COSTS.len() - 1];
         let at = |cost: f32| bar.left() + bar.width() * cost / most;
         let mut mesh = Mesh::default();
@@ -273,7 +278,10 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
         painted_text(ui, row.with_max_x(row.left() + 40.0), -0.01, &airspeed, small.clone(), palette.dim_text);
         for (place, column) in columns.iter().enumerate() {
             let Some((_, cost)) = worst_of(state, condition.id(), &column.pairs) else { continue };
-            let cell = Rect::from_center_size(pos2(center(place), row.center().y), vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]));
+            let cell = Rect::from_center_size(
+                pos2(center(place), row.center().y),
+                vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]),
+            );
             paint_cost(ui, cell, cost, palette);
         }
     }
@@ -290,7 +298,10 @@ fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
 
 fn cost_words(state: &State, condition: ConditionId, pair: gdcm_core::dataset::Pair, cost: Cost) -> String {
     let [magnitude, phase] = [cost.magnitude, cost.phase].map(|cost| decimals(cost, 1));
-    format!("{} of condition {condition}: J of magnitude {magnitude}, of phase {phase}", state.dataset().pair_name(pair))
+    format!(
+        "{} of condition {condition}: J of magnitude {magnitude}, of phase {phase}",
+        state.dataset().pair_name(pair)
+    )
 }
 
 /// The dot of a condition, as it is in Net gain.
@@ -371,7 +382,11 @@ impl Marks {
         if self.held_out {
             ui.painter().vline(row.left() + 1.0, row.shrink(3.0).y_range(), Stroke::new(2.0, palette.accent));
         } else if self.left_out {
-            ui.painter().hline(row.left() + 4.0..=row.left() + 22.0, row.center().y, Stroke::new(1.0, palette.quiet_text));
+            ui.painter().hline(
+                row.left() + 4.0..=row.left() + 22.0,
+                row.center().y,
+                Stroke::new(1.0, palette.quiet_text),
+            );
         }
     }
 

@@ -50,7 +50,8 @@ pub fn columns(state: &State) -> Vec<CostColumn> {
     let held: Vec<Pair> = state.study.settings.constrained.marked().collect();
     if held.len() > MOST_COLUMNS {
         let of_input = |input: usize| held.iter().copied().filter(|pair| pair.input == input).collect::<Vec<_>>();
-        let columns = dataset.inputs().iter().enumerate().map(|(input, channel)| (channel.name.clone(), of_input(input)));
+        let columns =
+            dataset.inputs().iter().enumerate().map(|(input, channel)| (channel.name.clone(), of_input(input)));
         let columns = columns.map(|(head, pairs)| CostColumn { head, pairs });
         return columns.filter(|column| !column.pairs.is_empty()).collect();
     }

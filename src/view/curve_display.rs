@@ -214,7 +214,11 @@ fn unit_entries(state: &State) -> Vec<Entry> {
             CurveCommand::ListValues(!curves.lists_values),
         ),
         entry(
-            if curves.shows_bands { "Hide the bands of identified models" } else { "Show the bands of identified models" },
+            if curves.shows_bands {
+                "Hide the bands of identified models"
+            } else {
+                "Show the bands of identified models"
+            },
             "How far each identified response may lie from its curve, at 95 %",
             CurveCommand::ShowBands(!curves.shows_bands),
         ),

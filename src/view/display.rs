@@ -9,13 +9,13 @@ use gdcm_core::study::{AcrossRole, ExplainTarget};
 
 use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
 
+use super::cost_map::MappedCost;
 use super::plot::{
     Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView, PhaseErrorUnit,
     PhaseUnit, Role,
 };
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, View};
-use super::cost_map::MappedCost;
 use super::start_page::OpensWith;
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, View};
 use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use egui::{Context, Id, Rect, Stroke, StrokeKind, Ui, pos2};
+use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
 use super::Palette;
 
@@ -112,6 +112,20 @@ pub fn leave_region(ctx: &Context, forward: bool) {
     }
 }
 
+fn had_focus() -> Id {
+    Id::unique("had anything the focus")
+}
+
+/// Whether a control had the focus when the last frame ended: the Escape key has taken it away by now, and was meant for it.
+pub fn was_focused(ctx: &Context) -> bool {
+    ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
+}
+
+/// Takes the Escape key for something that it closes, unless it was meant for a control.
+pub fn take_escape(ctx: &Context) -> bool {
+    !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+}
+
 /// Width of the ring \[pt\].
 const WIDTH: f32 = 2.0;
 /// Between the ring and what it surrounds \[pt\].
@@ -119,7 +133,9 @@ const GAP: f32 = 1.0;
 
 /// Draws the ring over all that was drawn before: the same around every control, list row, cell and plot.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
-    let Some(focused) = ctx.memory(|memory| memory.focused()).and_then(|id| ctx.read_response(id)) else { return };
+    let focused = ctx.memory(|memory| memory.focused());
+    ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));
+    let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else { return };
     let in_view = focused.interact_rect;
     if !in_view.is_positive() {
         return;

@@ -1,12 +1,12 @@
 //! What explains the window: the page of keys and gestures, and the guided tour.
 
 use egui::{
-    Align2, Area, Button, Context, Frame, Grid, Id, Key, Modifiers, Order, Rect, RichText, ScrollArea, Stroke,
-    StrokeKind, Ui, Vec2, vec2,
+    Align2, Area, Button, Context, Frame, Grid, Id, Order, Rect, RichText, ScrollArea, Stroke, StrokeKind, Ui, Vec2,
+    vec2,
 };
 
 use super::command_table::command_table;
-use super::{Command, Palette, Reach, Region, SMALL_SIZE, State, region_place};
+use super::{Command, Palette, Reach, Region, SMALL_SIZE, State, region_place, take_escape};
 
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;
@@ -69,8 +69,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
             note_ui(ui, number, step, palette, commands);
         });
     });
-    let is_free = ctx.memory(|memory| memory.focused().is_none());
-    if is_free && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+    if take_escape(ctx) {
         commands.push(Command::ShowTourStep(None));
     }
 }

@@ -1,6 +1,8 @@
 //! The bundles of the condition shown: which models are kept, which represents, which are suspect.
 
-use egui::{Align, Checkbox, FontId, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Align, Checkbox, FontId, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
 
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
@@ -23,27 +25,22 @@ pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         let room = ui.available_height();
         let models = state.condition().bundle(BundleKind::Identified).len() as f32;
         let height = if is_open { (FOLD + ROW_HEIGHT * models + 8.0).min(0.5 * room) } else { FOLD };
-        let frame = egui::Frame::new();
-        egui::Panel::bottom("identified models").frame(frame).exact_size(height).show_separator_line(false).show(ui, |ui| {
-            ui.spacing_mut().item_spacing.y = 0.0;
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let (above, below) = ui.available_rect_before_wrap().split_top_bottom_at_y(ui.max_rect().bottom() - height);
+        ui.scope_builder(UiBuilder::new().id_salt("physics models").max_rect(above), |ui| {
+            physics_ui(ui, state, palette, commands);
+        });
+        ui.scope_builder(UiBuilder::new().id_salt("identified models").max_rect(below), |ui| {
             fold_ui(ui, state, is_open, palette, commands);
             if is_open {
                 rows_ui(ui, state, palette, BundleKind::Identified, commands);
             }
         });
-        ui.spacing_mut().item_spacing.y = 0.0;
-        physics_ui(ui, state, palette, commands);
     });
 }
 
 /// One bundle in a sheet beside the rail.
-pub fn bundle_sheet_ui(
-    ui: &mut Ui,
-    state: &State,
-    kind: BundleKind,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+pub fn bundle_sheet_ui(ui: &mut Ui, state: &State, kind: BundleKind, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     region_ui(ui, Region::Models, |ui| match kind {
         BundleKind::Physics => physics_ui(ui, state, palette, commands),
@@ -101,7 +98,11 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
 /// The line that folds and unfolds the identified models.
 fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), FOLD), Sense::click());
-    ui.painter().hline(row.expand2(vec2(12.0, 0.0)).x_range(), row.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    ui.painter().hline(
+        row.expand2(vec2(12.0, 0.0)).x_range(),
+        row.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Identified models", medium(BODY_SIZE), palette.text);
     let models = state.condition().bundle(BundleKind::Identified);

@@ -5,8 +5,8 @@ use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use std::sync::Arc;
 
 use egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle, Theme,
-    Visuals, vec2,
+    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle,
+    Theme, Visuals, vec2,
 };
 
 use super::plot_style::{self, CurveColors, PlotStyle};

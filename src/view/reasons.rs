@@ -83,7 +83,9 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
 fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
     let outcome = shown.gains.proof.outcome;
     let words = match outcome {
-        Outcome::NotProven { .. } if is_proving => "Whether better gains exist is being searched beside the live answer.",
+        Outcome::NotProven { .. } if is_proving => {
+            "Whether better gains exist is being searched beside the live answer."
+        }
         Outcome::NotProven { .. } => "Not proven.",
         Outcome::Proven { .. } => "Global optimum: a lower bound proves it.",
     };

@@ -78,7 +78,8 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let pair = state.display.pair;
     let held = if state.study.settings.constrained[pair] { "held" } else { "free" };
     let title = format!("{}, {held}", state.dataset().pair_name(pair));
-    let line = |row: usize| egui::Rect::from_min_size(inner.min + vec2(0.0, ROW * row as f32), vec2(inner.width(), ROW));
+    let line =
+        |row: usize| egui::Rect::from_min_size(inner.min + vec2(0.0, ROW * row as f32), vec2(inner.width(), ROW));
     painted_text(ui, line(0), 0.0, &title, medium(BODY_SIZE), palette.text);
     let places = [inner.width() * 0.54, inner.width() * 0.78, inner.width()];
     let right = |at: f32| at - inner.width() - 0.01;

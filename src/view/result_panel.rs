@@ -110,30 +110,61 @@ impl Side<'_> {
         painted_text(ui, upto, -0.01, words, font, color)
     }
 
-    fn gain_ui(&self, ui: &mut Ui, row: Rect, (channel, index, name): (Channel, usize, &str), palette: &Palette, commands: &mut Vec<Command>) {
+    fn gain_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        (channel, index, name): (Channel, usize, &str),
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
         let gains = if self.of_inputs { &self.shown.gains.inputs } else { &self.shown.gains.outputs };
         let gain = gains[index];
         let scalar = Scalar::ChannelGain(channel);
         let half = self.state.sureness().half(scalar).map(|half| format!("±{:.0}", 100.0 * half));
         let value = (decimals(gain, 3), medium(BODY_SIZE), palette.text);
         let asked = ExplainTarget::Gain(self.shown.condition.id(), channel);
-        self.value_ui(ui, (row, ENDS[0]), value, half, (format!("Gain of {name}"), gain.to_string(), scalar, asked), palette, commands);
+        self.value_ui(
+            ui,
+            (row, ENDS[0]),
+            value,
+            half,
+            (format!("Gain of {name}"), gain.to_string(), scalar, asked),
+            palette,
+            commands,
+        );
     }
 
-    fn delay_ui(&self, ui: &mut Ui, row: Rect, (channel, index, name): (Channel, usize, &str), palette: &Palette, commands: &mut Vec<Command>) {
+    fn delay_ui(
+        &self,
+        ui: &mut Ui,
+        row: Rect,
+        (channel, index, name): (Channel, usize, &str),
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
         let delays = if self.of_inputs { &self.shown.delays.inputs } else { &self.shown.delays.outputs };
         let delay_ms = s_to_ms(delays[index]);
         let is_delayed = delay_ms != 0.0;
         let scalar = Scalar::ChannelDelay(channel);
         let half = self.state.sureness().half(scalar).filter(|_| is_delayed);
         let half = half.map(|half| format!("±{:.0}", s_to_ms(half)));
-        let text = if is_delayed { decimals(delay_ms, if delay_ms.abs() < 10.0 { 1 } else { 0 }) } else { "0".to_owned() };
+        let text =
+            if is_delayed { decimals(delay_ms, if delay_ms.abs() < 10.0 { 1 } else { 0 }) } else { "0".to_owned() };
         let color = if is_delayed { palette.text } else { palette.quiet_text };
         let filter = self.shown.compensated.as_ref().and_then(|led| led.leads.filters()[channel]);
         let filter = filter.map(|filter| format!("\nlead: {}", servo_words(filter))).unwrap_or_default();
         let asked = ExplainTarget::Delay(self.shown.condition.id(), channel);
         let told = (format!("Delay of {name}"), format!("{delay_ms} ms{filter}"), scalar, asked);
-        self.value_ui(ui, (row, ENDS[1]), (text, FontId::proportional(BODY_SIZE), color), half, told, palette, commands);
+        self.value_ui(
+            ui,
+            (row, ENDS[1]),
+            (text, FontId::proportional(BODY_SIZE), color),
+            half,
+            told,
+            palette,
+            commands,
+        );
     }
 
     /// A value with half the width of its bar; a click asks how it was computed.
@@ -156,7 +187,8 @@ impl Side<'_> {
         let area = row.with_min_x(place.left() - 4.0).with_max_x(place.right() + 3.0).shrink2(vec2(0.0, 0.5));
         let response = ui.interact(area, ui.scope_id().with(&name), Sense::click());
         let response = named(response, Role::Button, format!("{name}: {text} {}", half.unwrap_or_default()).trim_end());
-        let words = self.state.sureness().bar(scalar).map(|(bar, level)| format!("\n{}", bar_words(bar, scalar, level)));
+        let words =
+            self.state.sureness().bar(scalar).map(|(bar, level)| format!("\n{}", bar_words(bar, scalar, level)));
         let hint = format!("{exact}{}\nclick: {QUESTION}", words.unwrap_or_default());
         if response.on_hover_cursor(CursorIcon::Help).on_hover_text(hint).clicked() {
             commands.push(Command::Explain(Some(asked)));

@@ -8,8 +8,8 @@ use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, s
 use super::answer_panel::chevron;
 use super::palette::medium;
 use super::{
-    BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text, region_ui,
-    row_ui,
+    BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text,
+    region_ui, row_ui,
 };
 
 /// Largest value on a slider; more can be typed.

@@ -1,9 +1,9 @@
 //! A sheet over the middle of the window, at one of its sides: closed by Escape, by its cross, or by a click beside it.
 
-use egui::{Align, Area, Frame, Id, Key, Layout, Margin, Modifiers, Order, Rect, RichText, Role, ScrollArea, Stroke, Ui, vec2};
+use egui::{Align, Area, Frame, Id, Layout, Margin, Order, Rect, RichText, Role, ScrollArea, Stroke, Ui, vec2};
 
 use super::palette::medium;
-use super::{BODY_SIZE, Palette, named};
+use super::{BODY_SIZE, Palette, named, take_escape};
 
 /// What a sheet may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,8 @@ impl Sheet {
 pub fn sheet_ui(ui: &Ui, centre: Rect, sheet: Sheet, palette: &Palette, add: impl FnOnce(&mut Ui)) -> bool {
     let (is_right, width) = sheet.place();
     let width = width.min(centre.width());
-    let place = if is_right { centre.with_min_x(centre.right() - width) } else { centre.with_max_x(centre.left() + width) };
+    let place =
+        if is_right { centre.with_min_x(centre.right() - width) } else { centre.with_max_x(centre.left() + width) };
     let id = Id::unique(("sheet", sheet.title()));
     let mut is_closed = false;
     let shown = Area::new(id).order(Order::Middle).fixed_pos(place.min).show(ui.ctx(), |ui| {
@@ -63,9 +64,7 @@ pub fn sheet_ui(ui: &Ui, centre: Rect, sheet: Sheet, palette: &Palette, add: imp
         at.is_some_and(|at| !shown.response.rect.contains(at))
     });
     let is_over = egui::Popup::is_any_open(ui.ctx());
-    let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
-    let escape = is_free && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
-    is_closed |= escape || (beside && !is_new && !is_over);
+    is_closed |= take_escape(ui.ctx()) || (beside && !is_new && !is_over);
     if is_closed {
         ui.ctx().data_mut(|data| data.remove::<bool>(id));
     }

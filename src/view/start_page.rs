@@ -1,6 +1,9 @@
 //! The page without panels: three ways in, each named by what the engineer has, and what is open behind it.
 
-use egui::{Align2, Button, Color32, FontId, Frame, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align2, Button, Color32, FontId, Frame, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense, Shape, Stroke,
+    StrokeKind, Ui, UiBuilder, pos2, vec2,
+};
 use serde::{Deserialize, Serialize};
 
 use super::assembling::AssemblingCommand;
@@ -122,7 +125,9 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
 
 fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     ui.label(RichText::new("Match a physics model to flight").font(medium(DISPLAY_SIZE)));
-    ui.label(palette.dim("One gain and one delay a channel, scheduled with airspeed. Every figure says how sure it is."));
+    ui.label(
+        palette.dim("One gain and one delay a channel, scheduled with airspeed. Every figure says how sure it is."),
+    );
     ui.add_space(16.0);
     for (place, way) in ways().into_iter().enumerate() {
         way_ui(ui, way, place == 0, palette, commands);
@@ -142,7 +147,10 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     let icon = Rect::from_center_size(pos2(rect.left() + 30.0, rect.center().y), vec2(22.0, 22.0));
     (way.icon)(ui, icon, if is_primary { palette.accent } else { palette.dim_text });
     let text = rect.with_min_x(rect.left() + 58.0);
-    let [upper, lower] = [text.with_max_y(rect.center().y + 2.0).with_min_y(rect.top() + 12.0), text.with_min_y(rect.center().y).with_max_y(rect.bottom() - 12.0)];
+    let [upper, lower] = [
+        text.with_max_y(rect.center().y + 2.0).with_min_y(rect.top() + 12.0),
+        text.with_min_y(rect.center().y).with_max_y(rect.bottom() - 12.0),
+    ];
     painted_text(ui, upper, 0.0, way.title, medium(TITLE_SIZE), palette.text);
     painted_text(ui, lower, 0.0, way.words, FontId::proportional(BODY_SIZE), palette.dim_text);
     let place = Rect::from_center_size(pos2(rect.right() - 84.0, rect.center().y), vec2(132.0, 28.0));
@@ -186,7 +194,14 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         let folder = if file.missing { format!("{}, missing", file.folder) } else { file.folder.clone() };
         let room = row.right() - name.right() - 16.0;
         let folder = super::controls::elided(ui, &folder, room, SMALL_SIZE);
-        painted_text(ui, row, name.right() - row.left() + 10.0, &folder, FontId::proportional(SMALL_SIZE), palette.dim_text);
+        painted_text(
+            ui,
+            row,
+            name.right() - row.left() + 10.0,
+            &folder,
+            FontId::proportional(SMALL_SIZE),
+            palette.dim_text,
+        );
         let response = named(response, Role::Button, format!("Open again: {} in {}", file.name, file.folder));
         if response.clicked() && !file.missing {
             commands.push(Command::Open(file.path.clone()));
@@ -255,7 +270,8 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
 fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), palette: &Palette) {
     ui.painter().rect(plot, 4.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     let of_role = |role: CurveRole| curves.iter().find(|curve| curve.role == role);
-    let Some((corrected, identified)) = of_role(CurveRole::Corrected).zip(of_role(CurveRole::IdentifiedRepresentative)) else {
+    let Some((corrected, identified)) = of_role(CurveRole::Corrected).zip(of_role(CurveRole::IdentifiedRepresentative))
+    else {
         return;
     };
     const STEPS: usize = 60;
@@ -274,7 +290,8 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
         let inner = plot.shrink(8.0);
         pos2(inner.left() + inner.width() * step as f32 / STEPS as f32, inner.bottom() - part * inner.height())
     };
-    let path = |phases: &[f64]| -> Vec<Pos2> { phases.iter().enumerate().map(|(step, phase)| at(step, *phase)).collect() };
+    let path =
+        |phases: &[f64]| -> Vec<Pos2> { phases.iter().enumerate().map(|(step, phase)| at(step, *phase)).collect() };
     let mut mesh = egui::Mesh::default();
     for (step, (a, b)) in path(&after).into_iter().zip(path(&flight)).enumerate() {
         mesh.colored_vertex(a, palette.identified.gamma_multiply(0.22));
@@ -294,14 +311,29 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
 fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {
     let (left, right, top, bottom) = (place.left() + 4.0, place.right() - 4.0, place.top() + 1.0, place.bottom() - 1.0);
     let fold = right - 6.0;
-    let outline = [pos2(fold, top), pos2(left, top), pos2(left, bottom), pos2(right, bottom), pos2(right, top + 6.0), pos2(fold, top)];
+    let outline = [
+        pos2(fold, top),
+        pos2(left, top),
+        pos2(left, bottom),
+        pos2(right, bottom),
+        pos2(right, top + 6.0),
+        pos2(fold, top),
+    ];
     ui.painter().line(outline.to_vec(), Stroke::new(1.8, color));
     ui.painter().line(vec![pos2(fold, top), pos2(fold, top + 6.0), pos2(right, top + 6.0)], Stroke::new(1.8, color));
 }
 
 fn folder_icon(ui: &Ui, place: Rect, color: Color32) {
     let (left, right, top, bottom) = (place.left() + 1.0, place.right() - 1.0, place.top() + 3.0, place.bottom() - 3.0);
-    let outline = [(left, top), (left + 7.0, top), (left + 10.0, top + 3.0), (right, top + 3.0), (right, bottom), (left, bottom), (left, top)];
+    let outline = [
+        (left, top),
+        (left + 7.0, top),
+        (left + 10.0, top + 3.0),
+        (right, top + 3.0),
+        (right, bottom),
+        (left, bottom),
+        (left, top),
+    ];
     ui.painter().line(outline.map(|(x, y)| pos2(x, y)).to_vec(), Stroke::new(1.8, color));
 }
 

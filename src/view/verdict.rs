@@ -91,7 +91,9 @@ impl Verdict {
         };
         match state.outcome() {
             None => nothing(state.results.absence().to_owned(), Vec::new()),
-            Some(Err(failure)) => Self { caution: Some(failure.to_string()), ..nothing("no result".to_owned(), Vec::new()) },
+            Some(Err(failure)) => {
+                Self { caution: Some(failure.to_string()), ..nothing("no result".to_owned(), Vec::new()) }
+            }
             Some(Ok(shown)) => Self::of_result(state, shown),
         }
     }
@@ -191,7 +193,10 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
     let alone = |steps: Vec<Step>| (steps, String::new());
     if let Some(channel) = shown.doubts.iter().find_map(|doubt| doubt.turns()) {
         let (label, command) = turn_entry(state, channel, Some(SignRole::Identified));
-        return (vec![Step::new(label, command), Step::reasons("Why?")], "its sign seems to be the other one".to_owned());
+        return (
+            vec![Step::new(label, command), Step::reasons("Why?")],
+            "its sign seems to be the other one".to_owned(),
+        );
     }
     let open = state.open_suggestions(shown);
     if !open.is_empty() {

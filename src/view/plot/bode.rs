@@ -275,11 +275,19 @@ impl Places {
         let has_strip = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_strip { STRIP_HEIGHT + 2.0 * GAP } else { GAP };
         let plots = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
-        let magnitude = Rect::from_min_size(pos2(inner.left(), inner.top() + HEADING), vec2(inner.width(), MAGNITUDE_PART * plots));
-        let strip = Rect::from_min_max(pos2(inner.left() + VALUE_AXIS_WIDTH, magnitude.bottom() + GAP), pos2(inner.right(), magnitude.bottom() + GAP + STRIP_HEIGHT));
+        let magnitude =
+            Rect::from_min_size(pos2(inner.left(), inner.top() + HEADING), vec2(inner.width(), MAGNITUDE_PART * plots));
+        let strip = Rect::from_min_max(
+            pos2(inner.left() + VALUE_AXIS_WIDTH, magnitude.bottom() + GAP),
+            pos2(inner.right(), magnitude.bottom() + GAP + STRIP_HEIGHT),
+        );
         let phase = inner.with_min_y(magnitude.bottom() + between + HEADING);
         let heading = |pane: Rect| Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top());
-        Self { headings: [heading(magnitude), heading(phase)], panes: [magnitude, phase], strip: has_strip.then_some(strip) }
+        Self {
+            headings: [heading(magnitude), heading(phase)],
+            panes: [magnitude, phase],
+            strip: has_strip.then_some(strip),
+        }
     }
 }
 
@@ -369,7 +377,14 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
         let name = painted_text(ui, line, 0.0, name, medium(BODY_SIZE), palette.text);
         let unit = unit.trim_end_matches(']');
-        let unit = painted_text(ui, line, name.right() - line.left() + 4.0, unit, FontId::proportional(BODY_SIZE), palette.dim_text);
+        let unit = painted_text(
+            ui,
+            line,
+            name.right() - line.left() + 4.0,
+            unit,
+            FontId::proportional(BODY_SIZE),
+            palette.dim_text,
+        );
         if let Some(note) = scene.notes[index] {
             let color = if note.warns { palette.warning } else { palette.dim_text };
             let verdict = painted_text(ui, line, -0.01, &note.verdict, FontId::proportional(BODY_SIZE), color);

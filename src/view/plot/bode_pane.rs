@@ -6,9 +6,7 @@ use egui::{
 };
 use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
 
-use super::axes::{
-    FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
-};
+use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
 use super::bode::BodeScene;
 use super::bode_view::{BodeView, DrawnPane};

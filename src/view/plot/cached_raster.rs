@@ -148,8 +148,7 @@ mod tests {
     use gdcm_files::figure::Dash;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {
-        let look =
-            CurveStyle { color: Color32::RED, width: 2.0, dash: Dash::Solid, length: 0.0 };
+        let look = CurveStyle { color: Color32::RED, width: 2.0, dash: Dash::Solid, length: 0.0 };
         let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
         StillScene { frame, pixels_per_point: 1.5, curves: curves.iter().map(|serial| (*serial, look)).collect() }
     }

@@ -127,12 +127,8 @@ impl Chips<'_> {
     }
 }
 
-const BAND_SAMPLE: CurveStyle = CurveStyle {
-    color: Color32::TRANSPARENT,
-    width: 0.0,
-    dash: gdcm_files::figure::Dash::Solid,
-    length: 0.0,
-};
+const BAND_SAMPLE: CurveStyle =
+    CurveStyle { color: Color32::TRANSPARENT, width: 0.0, dash: gdcm_files::figure::Dash::Solid, length: 0.0 };
 
 /// Where the next chip goes.
 struct Row {

@@ -114,7 +114,14 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
     let lines = |rect: Rect| [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
     let small = FontId::proportional(SMALL_SIZE);
     let [upper, lower] = lines(column(0));
-    painted_text(ui, upper, 0.0, &elided(ui, &readout.heading, upper.width(), SMALL_SIZE), small.clone(), palette.dim_text);
+    painted_text(
+        ui,
+        upper,
+        0.0,
+        &elided(ui, &readout.heading, upper.width(), SMALL_SIZE),
+        small.clone(),
+        palette.dim_text,
+    );
     painted_text(ui, lower, 0.0, &readout.frequency, medium(BODY_SIZE), palette.text);
     for (place, cell) in cells.iter().enumerate() {
         let [upper, lower] = lines(column(place + 1));

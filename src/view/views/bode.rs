@@ -8,7 +8,7 @@ use gdcm_files::figure::{ConditionSource, decimals, uncertainty_bands};
 use super::frequency::{bode_curves, frequency_plot_ui};
 use crate::view::command::Command;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeBand, BodeCurve, BodeQuantity, BodeScene, PaneNote, Pane, ResponsePlace, Role};
+use crate::view::plot::{BodeBand, BodeCurve, BodeQuantity, BodeScene, Pane, PaneNote, ResponsePlace, Role};
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.

@@ -2,18 +2,16 @@
 
 use std::sync::Arc;
 
-use egui::{Align, Align2, Color32, FontId, Layout, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
 use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
 use gdcm_core::uncertainty::VarianceDecomposition;
 use gdcm_core::units::{s_to_ms, signed};
 
-use super::View;
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;
-use crate::view::figures::figure_button_ui;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
 
@@ -31,10 +29,7 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         return;
     };
     let mut sorting = state.display.evidence_tables;
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(uncertainty.differences_in_words()).strong());
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| figure_button_ui(ui, View::Evidence, commands));
-    });
+    ui.label(RichText::new(uncertainty.differences_in_words()).font(medium(BODY_SIZE)));
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         answer_ui(ui, state, &uncertainty, palette);
         scatter_ui(ui, state, &uncertainty, palette);

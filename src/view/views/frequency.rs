@@ -250,7 +250,11 @@ pub fn cursor_readout(
             warns: [false; 2],
         };
         let frequency = format!("{} → {}", unit.readout(from).trim_start_matches("ω "), frequency(to));
-        return Some(Readout { heading: "change between marks".to_owned(), frequency, cells: told.map(cell).collect() });
+        return Some(Readout {
+            heading: "change between marks".to_owned(),
+            frequency,
+            cells: told.map(cell).collect(),
+        });
     }
     let pair = of_role(Role::Corrected).zip(of_role(Role::IdentifiedRepresentative));
     let (heading, omega) = match (cursor, pinned) {

@@ -132,7 +132,7 @@ fn results_of_two_generations_of_settings_are_told_apart() {
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the condition shown is ahead", |window| state(window).results.first_is_ahead());
     window.get_by_label("of older settings");
-    window.get_by_label_contains("marks of older settings");
+    window.get_by_label_contains("11 · of older settings");
     let scheduled = drawn(&window, CurveRole::Scheduled);
     assert!(scheduled.label.ends_with("scheduled of older settings"), "{}", scheduled.label);
     trap.close(false);

@@ -6,8 +6,8 @@ use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;
 use super::*;
-use gdcm::view::{Command as Action, Sheet};
 use crate::made_up::two_lags;
+use gdcm::view::{Command as Action, Sheet};
 
 /// Its last identified model ends at 11.9 rad/s.
 const SHORT: &str = include_str!("../../data/edges/short-measurement.json");

@@ -17,10 +17,16 @@ fn narrow_window(height: f32) -> Window {
     window
 }
 
-/// The texts painted in the last frame whose place is inside `area`, each with its place.
+/// The texts painted in the last frame whose place is inside `area`, each with its place; none of what a sheet covers there.
 fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
-    let shapes = window.output().shapes.iter();
-    shapes
+    let shapes = &window.output().shapes;
+    let covers = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
+        egui::Shape::Rect(rect) => rect.fill.is_opaque() && rect.rect.contains_rect(area),
+        _ => false,
+    };
+    let front = shapes.iter().rposition(covers).unwrap_or(0);
+    shapes[front..]
+        .iter()
         .filter_map(|clipped| match &clipped.shape {
             egui::Shape::Text(text) => {
                 let place = text.visual_bounding_rect();

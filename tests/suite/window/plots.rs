@@ -179,7 +179,7 @@ fn an_idle_window_draws_no_frames() {
         assert!(frames < 60, "{tab} settled after {frames} frames");
         assert_asks_for_no_frame(&mut window, tab);
     }
-    click(&mut window, "Bode");
+    show(&mut window, View::Bode);
     // A pointer that rests on a curve: its name is shown, and stays.
     let nominal = drawn(&window, CurveRole::Nominal);
     let view = &state(&window).display.bode;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use gdcm_core::correction::Outcome;
 use gdcm_core::executor::Executor;
-use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, display_band};
+use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, curves_band};
 
 use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
@@ -233,7 +233,7 @@ fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
 
 fn curves_job(state: &State) -> CurvesJob {
     let dataset = Arc::clone(&state.study.dataset);
-    let grid = (display_band(state.study.settings.band), CURVE_POINTS);
+    let grid = (curves_band(&state.study.settings), CURVE_POINTS);
     CurvesJob { dataset, condition: state.condition().id(), grid }
 }
 

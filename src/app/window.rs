@@ -218,7 +218,6 @@ impl GdcmApp {
         let Some(curves) = curves else { return };
         let study = &self.state.study;
         if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id() {
-            self.state.display.bode.follow_band((study.settings.band.min(), study.settings.band.max()));
             self.state.results.curves = Some((job, curves));
         }
     }

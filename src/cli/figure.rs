@@ -4,7 +4,7 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
-use gdcm_core::study::{Analysis, CURVE_POINTS, Engine, Study, display_band};
+use gdcm_core::study::{Analysis, CURVE_POINTS, Engine, Study, curves_band};
 use gdcm_files::figure::{
     Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, all_channels,
 };
@@ -46,7 +46,7 @@ fn figure_of_condition(
         Some(Err(failure)) => return Err(Failure::NoResult { reason: format!("condition {condition}: {failure}") }),
         None => return Ok(None),
     };
-    let grid = (display_band(study.settings.band), CURVE_POINTS);
+    let grid = (curves_band(&study.settings), CURVE_POINTS);
     let Some(curves) = engine.curves(&study.dataset, condition, grid, &TerminalProgress::new("drawing"))? else {
         return Ok(None);
     };

@@ -79,8 +79,8 @@ impl Arrangement {
 
     /// The view that the dock shows; none where the view in front takes its room.
     pub fn dock(&self) -> Option<View> {
-        let needs_all = |view: View| view.kind().takes_dock || view == self.dock;
-        (!needs_all(self.view()) && !self.beside().is_some_and(|beside| beside == self.dock)).then_some(self.dock)
+        let is_free = !self.view().kind().takes_dock && self.view() != self.dock && self.beside() != Some(self.dock);
+        is_free.then_some(self.dock)
     }
 
     /// Whether the dock is unfolded in a window that has room for it, or has not.

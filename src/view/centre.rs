@@ -23,7 +23,7 @@ const FOLDED: f32 = 34.0;
 /// A window of this height unfolds the dock \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
 /// Part of the height that the dock takes.
-const DOCK_PART: f32 = 0.275;
+const DOCK_PART: f32 = 0.252;
 /// Space left and right of everything \[pt\].
 const PADDING: i8 = 16;
 
@@ -31,7 +31,7 @@ const PADDING: i8 = 16;
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     view_bar_ui(ui, state, palette, commands);
     if state.is_example {
-        let frame = Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 4, bottom: 0 });
+        let frame = Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 2, bottom: 0 });
         frame.show(ui, |ui| example_line_ui(ui, palette, commands));
     }
     if let Some(dock) = state.display.arrangement.dock() {
@@ -167,7 +167,8 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
 
 /// A view with its title and its tools in an area.
 fn part_ui(ui: &mut Ui, area: Rect, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
-    let margin = Margin { left: PADDING, right: PADDING, top: 6, bottom: 4 };
+    let top = if state.is_example { 0 } else { 6 };
+    let margin = Margin { left: PADDING, right: PADDING, top, bottom: 4 };
     ui.scope_builder(UiBuilder::new().id_salt(("view", view)).max_rect(area), |ui| {
         ui.set_clip_rect(area.intersect(ui.clip_rect()));
         Frame::new().inner_margin(margin).show(ui, |ui| {

@@ -1,9 +1,10 @@
 //! The page without panels: three ways in, each named by what the engineer has, and what is open behind it.
 
 use egui::{
-    Align2, Button, Color32, FontId, Frame, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense, Shape, Stroke,
-    StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Button, Color32, FontId, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense,
+    Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
+use gdcm_files::figure::compact;
 use serde::{Deserialize, Serialize};
 
 use super::assembling::AssemblingCommand;
@@ -42,6 +43,8 @@ impl OpensWith {
 
 /// Widths of the ways in, of what is open, and of the space between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
+/// Height of a line of text that goes over several \[pt\].
+const LINE: f32 = 20.0;
 /// Height of a way in \[pt\].
 const WAY: f32 = 72.0;
 
@@ -82,7 +85,8 @@ fn ways() -> [Way; 3] {
 
 /// The line above the plots of the example that offers the same three ways.
 pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    let size = egui::vec2(ui.available_width(), 18.0);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.spacing_mut().button_padding = egui::Vec2::ZERO;
         ui.spacing_mut().interact_size.y = 16.0;
@@ -106,7 +110,7 @@ pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mu
     let [left, right, gap] = WIDTHS;
     let has_both = area.width() >= left + right + gap;
     let width = if has_both { left + right + gap } else { left.min(area.width()) };
-    let height = 520.0_f32.min(area.height());
+    let height = 450.0_f32.min(area.height());
     let page = Rect::from_center_size(area.center(), vec2(width, height));
     let column = page.with_max_x(page.left() + left.min(width));
     ui.scope_builder(UiBuilder::new().max_rect(column), |ui| {
@@ -160,6 +164,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     if named(ui.put(place, button), Role::Button, way.button).clicked() {
         commands.push(way.command);
     }
+    ui.advance_cursor_after_rect(rect);
 }
 
 /// What is done with data, where nothing was open before.
@@ -174,7 +179,7 @@ fn steps_ui(ui: &mut Ui, palette: &Palette) {
             let (line, _) = ui.allocate_exact_size(vec2(ui.available_width(), 6.0), Sense::hover());
             ui.painter().hline(line.x_range(), line.top(), Stroke::new(2.0, palette.line));
             ui.label(RichText::new(title).font(medium(BODY_SIZE)));
-            ui.label(palette.dim(words));
+            ui.with_layout(Layout::top_down(Align::Min), |ui| ui.label(palette.dim(words).line_height(Some(LINE))));
         }
     });
 }
@@ -228,7 +233,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
             (state.dataset().name().to_owned(), words, "Go on with it")
         };
         ui.label(RichText::new(title).font(medium(TITLE_SIZE)));
-        ui.label(palette.dim(words));
+        ui.label(palette.dim(words).line_height(Some(LINE)));
         ui.add_space(12.0);
         picture_ui(ui, state, palette);
         ui.add_space(8.0);
@@ -266,9 +271,19 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     phases_ui(ui, plot.with_min_y(head.bottom()), &curves, (band.min(), band.max()), palette);
 }
 
+/// The frequencies and the phases where the lines of a small plot stand \[rad/s, deg\].
+fn grid_of((min, max): (f64, f64), (least, most): (f64, f64)) -> [Vec<f64>; 2] {
+    let decades = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
+    let omegas = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
+    let inside = omegas.filter(|omega| (min..=max).contains(omega)).collect();
+    let [first, last] = [(least / 90.0).ceil() as i32, (most / 90.0).floor() as i32];
+    [inside, (first..=last).map(|line| 90.0 * f64::from(line)).collect()]
+}
+
 /// The phases of the identified and of the corrected model over the band, and what is missing between them.
 fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), palette: &Palette) {
-    ui.painter().rect(plot, 4.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    let plot = plot.with_min_x(plot.left() + 28.0).with_max_y(plot.bottom() - 14.0);
+    ui.painter().rect(plot, 0.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     let of_role = |role: CurveRole| curves.iter().find(|curve| curve.role == role);
     let Some((corrected, identified)) = of_role(CurveRole::Corrected).zip(of_role(CurveRole::IdentifiedRepresentative))
     else {
@@ -287,9 +302,23 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
     }
     let at = |step: usize, phase: f64| -> Pos2 {
         let part = ((phase - least) / (most - least)) as f32;
-        let inner = plot.shrink(8.0);
-        pos2(inner.left() + inner.width() * step as f32 / STEPS as f32, inner.bottom() - part * inner.height())
+        let inner = plot.shrink2(vec2(0.0, 8.0));
+        pos2(plot.left() + plot.width() * step as f32 / STEPS as f32, inner.bottom() - part * inner.height())
     };
+    let small = FontId::proportional(SMALL_SIZE);
+    let [omegas, lines] = grid_of((min, max), (least, most));
+    for tick in omegas {
+        let x = plot.left() + plot.width() * ((tick / min).ln() / (max / min).ln()) as f32;
+        ui.painter().vline(x, plot.y_range(), Stroke::new(1.0, palette.grid));
+        let under = pos2(x, plot.bottom() + 2.0);
+        ui.painter().text(under, Align2::CENTER_TOP, compact(tick), small.clone(), palette.dim_text);
+    }
+    for line in lines {
+        let y = at(0, line).y;
+        ui.painter().hline(plot.x_range(), y, Stroke::new(1.0, palette.grid));
+        let beside = pos2(plot.left() - 4.0, y);
+        ui.painter().text(beside, Align2::RIGHT_CENTER, compact(line), small.clone(), palette.dim_text);
+    }
     let path =
         |phases: &[f64]| -> Vec<Pos2> { phases.iter().enumerate().map(|(step, phase)| at(step, *phase)).collect() };
     let mut mesh = egui::Mesh::default();
@@ -306,6 +335,12 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
     palette.role_style(CurveRole::IdentifiedRepresentative, false).add_shapes(path(&flight), &mut shapes);
     palette.role_style(CurveRole::Corrected, false).add_shapes(path(&after), &mut shapes);
     ui.painter().extend(shapes);
+    let named = [(&flight, "flight", palette.identified, 10.0), (&after, "corrected", palette.corrected, -8.0)];
+    for (phases, name, color, aside) in named {
+        let middle = at(STEPS / 2, phases[STEPS / 2]) + vec2(aside, 0.0);
+        let align = if aside > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_TOP };
+        ui.painter().text(middle, align, name, small.clone(), palette.name_of(color));
+    }
 }
 
 fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align2, CursorIcon, FontId, Rect, Response, Ui, UiBuilder, pos2, vec2};
+use egui::{Align2, Color32, CursorIcon, FontId, Rect, Response, Ui, UiBuilder, pos2, vec2};
 use egui_plot::PlotPoint;
+use gdcm_core::units::signed;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{BandChange, Emphasis, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui};
@@ -11,7 +12,8 @@ use super::bode_view::BodeView;
 use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
-use super::legend::{Chip, ChipEvent, Chips, role_chips};
+use super::legend::{Chip, ChipEvent, Chips, RoleChip, role_chips};
+use super::navigation::pressed_digit;
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, curve_tooltip_ui, readout_strip_ui};
@@ -59,6 +61,8 @@ pub struct BodeScene<'a> {
     pub notes: [Option<&'a PaneNote>; 2],
     /// What a correction is still to give: the phase between the corrected and the identified model, within the band.
     pub missing: Option<&'a BodeBand>,
+    /// Where the curves are drawn only to show what the leads cost; none where there are no leads.
+    pub invalid: Option<&'a InvalidRegion>,
     /// Whether bands are drawn; none where there are no bands.
     pub shows_bands: Option<bool>,
     /// The role that is drawn above all others.
@@ -90,6 +94,17 @@ pub struct PaneNote {
     pub warns: bool,
 }
 
+/// Frequencies above the band, where the corrected model is not valid but pays for its leads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InvalidRegion {
+    /// Where it ends: as far as curves are drawn \[rad/s\].
+    pub up_to: f64,
+    /// "not valid above 12 rad/s".
+    pub words: String,
+    /// Magnitudes of the corrected model with leads and without at its end \[dB\].
+    pub ends_db: Option<[f64; 2]>,
+}
+
 static NO_ROLES: BTreeSet<Role> = BTreeSet::new();
 
 impl<'a> BodeScene<'a> {
@@ -108,6 +123,7 @@ impl<'a> BodeScene<'a> {
             readout: None,
             notes: [None; 2],
             missing: None,
+            invalid: None,
             shows_bands: None,
             raised: None,
             names_curves: false,
@@ -182,12 +198,20 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
         drawn = scene.curves.iter().filter(|curve| !curve.hidden).cloned().collect();
         visible.curves = &drawn;
     }
+    // While an end of the band is dragged, nothing moves under the pointer.
+    if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
+        view.follow_curves(scene.curves);
+    }
     view.fit_if_requested(&visible);
     ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
         let height = chips_ui(ui, rect, scene, palette, &mut events);
         let places = Places::of(rect.with_min_y(rect.top() + height), scene);
-        panes_ui(ui, &places, &visible, view, palette, &mut events);
+        if panes_ui(ui, &places, &visible, view, palette, &mut events) {
+            let roles = role_chips(scene.curves, scene.hidden_roles, palette);
+            let pressed = pressed_digit(ui).and_then(|digit| roles.get(digit.checked_sub(1)?));
+            events.extend(pressed.map(|chip| BodeEvent::RoleToggled(chip.role)));
+        }
         headings_ui(ui, &places, &visible, view, palette);
     });
     ui.advance_cursor_after_rect(rect);
@@ -196,8 +220,13 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
 
 /// The switches of all curves, hidden ones too, and what holds for the plot; gives the height that they take.
 fn chips_ui(ui: &Ui, rect: Rect, scene: &BodeScene<'_>, palette: &Palette, events: &mut Vec<BodeEvent>) -> f32 {
-    let roles = role_chips(scene.curves, scene.hidden_roles, palette);
+    let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     let plot = scene.quantity.label_suffix();
+    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
+    let overflows = chips.width(ui) > rect.width();
+    if overflows {
+        roles.iter_mut().for_each(RoleChip::leave_name_out);
+    }
     let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
     let (height, event) = chips.ui(ui, rect, palette);
     events.extend(event.map(|event| match event {
@@ -215,6 +244,8 @@ fn has_data(curves: &[BodeCurve]) -> bool {
     curves.iter().any(is_finite)
 }
 
+///
+/// Gives whether one of them has the focus.
 fn panes_ui(
     ui: &mut Ui,
     places: &Places,
@@ -222,7 +253,8 @@ fn panes_ui(
     view: &mut BodeView,
     palette: &Palette,
     events: &mut Vec<BodeEvent>,
-) {
+) -> bool {
+    let mut has_focus = false;
     let pointing = Pointing::find(ui, scene, view);
     let hit = pointing.and_then(|pointing| pointing.hit);
     let meant = hit.map(|hit| scene.curves[hit.curve].id.clone());
@@ -240,6 +272,7 @@ fn panes_ui(
             curve_tooltip_ui(&response, scene, &scene.curves[hit.curve], hit.omega, palette);
         }
         ask_for_menu(&response, scene, pointing, view);
+        has_focus |= response.has_focus();
         menu_ui(&response, scene, view, events, palette);
         set_cursor_icon(response, hit);
     }
@@ -248,6 +281,7 @@ fn panes_ui(
     {
         events.push(BodeEvent::Boxed(touched(scene.curves, pane, area, transform)));
     }
+    has_focus
 }
 
 /// A secondary click asks what can be done with the curve there, or with the ground.
@@ -424,22 +458,30 @@ fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette
         let at = transform.position_from_point(&PlotPoint::new(omega.log10(), curve.value_at(pane, omega)?));
         Some((role, at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0)))
     };
-    let mut ends: Vec<(Role, f32)> = NAMED.into_iter().filter_map(end).collect();
-    ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-    spread(&mut ends, frame.bottom() - 5.0);
-    for (role, y) in ends {
+    let named = |(role, y): (Role, f32)| {
         let color = palette.name_of(palette.role_style(role, false).color.to_opaque());
-        ui.painter().text(pos2(frame.right() + 6.0, y), Align2::LEFT_CENTER, role.name(), caption_font(), color);
+        (y, role.name().to_owned(), color)
+    };
+    let mut ends: Vec<(f32, String, Color32)> = NAMED.into_iter().filter_map(end).map(named).collect();
+    if let (Pane::Magnitude, Some([with, without])) = (pane, scene.invalid.and_then(|invalid| invalid.ends_db)) {
+        let at = transform.position_from_point(&PlotPoint::new(0.0, 0.5 * (with + without)));
+        let y = at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0);
+        ends.push((y, format!("{} dB", signed(with - without, 1)), palette.warning));
+    }
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spread(&mut ends, frame.bottom() - 5.0);
+    for (y, name, color) in ends {
+        ui.painter().text(pos2(frame.right() + 6.0, y), Align2::LEFT_CENTER, name, caption_font(), color);
     }
 }
 
 /// Moves places down until no two are closer than a name is high, then up again where they leave the plot.
-fn spread(ends: &mut [(Role, f32)], bottom: f32) {
+fn spread<T, U>(ends: &mut [(f32, T, U)], bottom: f32) {
     for index in 1..ends.len() {
-        ends[index].1 = ends[index].1.max(ends[index - 1].1 + NAME_GAP);
+        ends[index].0 = ends[index].0.max(ends[index - 1].0 + NAME_GAP);
     }
     let mut limit = bottom;
-    for (_, y) in ends.iter_mut().rev() {
+    for (y, ..) in ends.iter_mut().rev() {
         *y = y.min(limit);
         limit = *y - NAME_GAP;
     }
@@ -451,9 +493,9 @@ mod tests {
 
     #[test]
     fn names_keep_clear_of_one_another_and_within_the_plot() {
-        let mut ends = vec![(Role::Nominal, 80.0), (Role::Corrected, 95.0), (Role::IdentifiedRepresentative, 96.0)];
+        let mut ends = [80.0, 95.0, 96.0].map(|y| (y, (), ()));
         spread(&mut ends, 100.0);
-        let places: Vec<f32> = ends.iter().map(|(_, y)| *y).collect();
+        let places = ends.map(|(y, ..)| y);
         assert_eq!(places, [72.0, 86.0, 100.0]);
     }
 }

@@ -1,14 +1,14 @@
 //! One of the two stacked plots: axes, band, curves and cursor.
 
 use egui::{
-    Align2, Context, CursorIcon, Id, PointerButton, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
+    Align2, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui,
+    UiBuilder, WidgetInfo, pos2, vec2,
 };
-use egui_plot::{Axis, LineStyle, PlotTransform, PlotUi, Span, VLine};
+use egui_plot::{Axis, LineStyle, PlotPoint, PlotTransform, PlotUi, Span, VLine};
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
-use super::bode::BodeScene;
+use super::bode::{BodeScene, InvalidRegion};
 use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
 use super::curve::{BodeCurve, CurveId, DrawnItem, Pane, curve_lines};
@@ -17,7 +17,8 @@ use super::drawn_curves::{DrawnCurves, Pixel};
 use super::navigation::{Turn, plot_keys, turned};
 use super::picking::drawn_box_ui;
 use super::rule::{draw_band, rules_ui, strips_ui};
-use crate::view::palette::Palette;
+use crate::view::controls::elided;
+use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
@@ -55,6 +56,7 @@ pub(super) fn pane_ui(
         pane_plot(id, pane, rect, scene, palette).show(ui, move |plot| {
             plot.set_plot_bounds(bounds);
             band_shade(plot, scene.band, palette);
+            hatch(plot, scene, palette);
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
@@ -74,6 +76,9 @@ pub(super) fn pane_ui(
     axis_strips_ui(ui, (pane, rect), scene, view, palette);
     rules_ui(ui, scene.rules, pane, &shown.transform, palette);
     strips_ui(ui, scene.strips, &shown.transform, palette);
+    if let (Pane::Magnitude, Some(invalid)) = (pane, scene.invalid) {
+        invalid_strip_ui(ui, (scene.band.1, invalid), &shown.transform, palette);
+    }
     let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
@@ -119,6 +124,56 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
     let fill = palette.accent.gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
     plot.span(Span::new("", min.log10()..=max.log10()).fill(fill).border_width(0.0));
+}
+
+/// Hatches the frequencies where the model is not valid.
+fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
+    /// Between two lines \[pt\].
+    const STEP: f32 = 7.0;
+    if scene.invalid.is_none() {
+        return;
+    }
+    let (from, stroke) = (scene.band.1.log10(), Stroke::new(1.0, palette.warning.gamma_multiply(0.14)));
+    plot.add(DrawnItem::new(move |transform, shapes| {
+        let frame = *transform.frame();
+        let left = transform.position_from_point(&PlotPoint::new(from, 0.0)).x.max(frame.left());
+        let (width, height) = (frame.right() - left, frame.height());
+        if width <= 0.0 {
+            return;
+        }
+        for line in 1..=((width + height) / STEP) as usize {
+            // A line of 45 degrees down to the left, cut off where it leaves the region.
+            let along = line as f32 * STEP;
+            let (top, foot) = (along.min(width), (along - height).max(0.0));
+            let point = |x: f32| pos2(left + x, frame.top() + along - x);
+            shapes.push(Shape::line_segment([point(top), point(foot)], stroke));
+        }
+    }));
+}
+
+/// A strip over the upper edge that says above which frequency nothing is valid, and how far the leads raise what is drawn.
+fn invalid_strip_ui(ui: &Ui, (top, invalid): (f64, &InvalidRegion), transform: &PlotTransform, palette: &Palette) {
+    let frame = *transform.frame();
+    let at = |omega: f64, value: f64| transform.position_from_point(&PlotPoint::new(omega.log10(), value));
+    let left = at(top, 0.0).x.max(frame.left());
+    let strip = Rect::from_min_max(pos2(left, frame.top() + 1.0), pos2(frame.right() - 1.0, frame.top() + 17.0));
+    if strip.width() < 40.0 {
+        return;
+    }
+    ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
+    let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
+    let font = FontId::proportional(SMALL_SIZE);
+    ui.painter().text(strip.center(), Align2::CENTER_CENTER, words, font, palette.warning);
+    let Some([with, without]) = invalid.ends_db else { return };
+    let (upper, lower) = (at(invalid.up_to, with), at(invalid.up_to, without));
+    if !frame.contains(upper - vec2(6.0, 0.0)) || !frame.contains(lower - vec2(6.0, 0.0)) {
+        return;
+    }
+    let (x, stroke) = (upper.x - 9.0, Stroke::new(1.5, palette.warning));
+    ui.painter().vline(x, upper.y..=lower.y, stroke);
+    for y in [upper.y, lower.y] {
+        ui.painter().hline(x - 3.0..=x + 3.0, y, stroke);
+    }
 }
 
 /// Dims what lies outside the band: it is drawn, but does not count.

@@ -9,7 +9,7 @@ use super::bode::BodeScene;
 use super::cached_raster::CachedRaster;
 use gdcm_files::figure::fitted_values;
 
-use super::curve::{CurveId, Pane};
+use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::MenuSubject;
 use super::drawn_curves::DrawnCurves;
 use super::navigation::ViewedRange;
@@ -45,6 +45,8 @@ pub struct BodeView {
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
+    /// The frequencies of the curves that were last in view, as `log10 omega`.
+    followed: Option<Range>,
     /// What each pane drew last.
     pub(super) drawn: [DrawnPane; 2],
 }
@@ -55,6 +57,11 @@ pub(super) struct DrawnPane {
     pub(super) transform: Option<PlotTransform>,
     pub(super) curves: DrawnCurves,
     pub(super) image: CachedRaster,
+}
+
+/// From the first to the last frequency of all curves, as `log10 omega`.
+fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
+    Range::of(curves.iter().flat_map(|curve| curve.omega.iter()).map(|omega| omega.log10()))
 }
 
 impl Default for BodeView {
@@ -74,6 +81,7 @@ impl Default for BodeView {
             limits: None,
             must_fit_frequencies: true,
             must_fit_values: true,
+            followed: None,
             drawn: Default::default(),
         }
     }
@@ -99,14 +107,16 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Shows all frequencies again where a band \[rad/s\] that was set reaches out of what is in view, unless the engineer chose
-    /// that. A band that is dragged never does.
-    pub fn follow_band(&mut self, (min, max): (f64, f64)) {
-        /// An end dragged to the frame may come out a rounding error beyond it \[decades\].
-        const ROUNDING: f64 = 1e-6;
-        let view = self.log_omega.range();
-        let reaches_out = min.log10() < view.min - ROUNDING || max.log10() > view.max + ROUNDING;
-        self.must_fit_frequencies |= reaches_out && !self.log_omega.is_chosen();
+    /// Shows all frequencies again where the curves came to have others, unless the engineer chose what is in view.
+    pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
+        let ends = log_omega_of(curves);
+        if ends.is_some() && ends != self.followed {
+            let is_first = self.followed.is_none();
+            self.followed = ends;
+            let follows = !is_first && !self.log_omega.is_chosen();
+            self.must_fit_frequencies |= follows;
+            self.must_fit_values |= follows;
+        }
     }
 
     /// The curve under the pointer.
@@ -248,8 +258,7 @@ impl BodeView {
             return;
         }
         let ends = scene.omega_range.map(|(min, max)| Range::new(min.log10(), max.log10()));
-        let log_omega = || scene.curves.iter().flat_map(|curve| curve.omega.iter()).map(|omega| omega.log10());
-        let Some(log_omega) = ends.or_else(|| Range::of(log_omega())) else {
+        let Some(log_omega) = ends.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
         if std::mem::take(&mut self.must_fit_frequencies) {
@@ -257,7 +266,8 @@ impl BodeView {
         }
         if std::mem::take(&mut self.must_fit_values) {
             for pane in [Pane::Magnitude, Pane::Phase] {
-                if let Some(values) = fitted_values(scene.curves, pane, scene.band) {
+                let within = (scene.band.0, scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to));
+                if let Some(values) = fitted_values(scene.curves, pane, within) {
                     self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
                 }
             }

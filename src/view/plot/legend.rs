@@ -15,7 +15,7 @@ const GAP: f32 = 5.0;
 /// Length of a sample of a curve \[pt\].
 const SAMPLE: f32 = 18.0;
 /// Space at both ends of a chip \[pt\].
-const PAD: f32 = 8.0;
+const PAD: f32 = 6.0;
 /// Longest name of a single model shown beside its role, in characters.
 const NAME_LENGTH: usize = 22;
 
@@ -27,6 +27,15 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the curves of the role are drawn.
     pub(super) shown: bool,
+}
+
+impl RoleChip {
+    /// Leaves the name of a single model out of what the chip says.
+    pub(super) fn leave_name_out(&mut self) {
+        if self.role == Role::Representative {
+            self.text = self.role.name().to_owned();
+        }
+    }
 }
 
 /// One chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
@@ -90,6 +99,17 @@ pub(super) struct Chips<'a> {
 }
 
 impl Chips<'_> {
+    /// How wide all of them are beside one another \[pt\].
+    pub(super) fn width(&self, ui: &Ui) -> f32 {
+        let text = |text: &str| {
+            let font = FontId::proportional(SMALL_SIZE);
+            ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
+        };
+        let bands = self.bands.map(|_| BANDS);
+        let roles = self.roles.iter().map(|chip| chip.text.as_str()).chain(bands).map(|name| text(name) + SAMPLE + 6.0);
+        roles.chain(self.states.iter().map(|chip| text(&chip.text))).sum::<f32>() - GAP
+    }
+
     /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<ChipEvent>) {
         let mut row = Row { area, corner: area.min, event: None };
@@ -110,7 +130,7 @@ impl Chips<'_> {
         if let Some(shown) = self.bands {
             let style = CurveStyle { color: palette.identified.gamma_multiply(0.45), width: 7.0, ..BAND_SAMPLE };
             let name = format!("Show the band of 95 %{}", self.plot);
-            let response = row.chip_ui(ui, ("band of 95 %", &name), Some((style, shown)), palette);
+            let response = row.chip_ui(ui, (BANDS, &name), Some((style, shown)), palette);
             if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
                 row.event = Some(ChipEvent::Bands(!shown));
             }
@@ -126,6 +146,9 @@ impl Chips<'_> {
         (height, row.event)
     }
 }
+
+/// What the chip of the bands says.
+const BANDS: &str = "band of 95 %";
 
 const BAND_SAMPLE: CurveStyle =
     CurveStyle { color: Color32::TRANSPARENT, width: 0.0, dash: gdcm_files::figure::Dash::Solid, length: 0.0 };

@@ -41,6 +41,13 @@ pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut Bod
     }
 }
 
+/// The digit from 1 to 9 that is pressed, taken from the keys.
+pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
+    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+    let pressed = |key: &Key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, *key));
+    digits.iter().position(pressed).map(|place| place + 1)
+}
+
 /// Scrolled points that make a factor of e: about four clicks of a wheel.
 const POINTS_PER_E: f32 = 200.0;
 

@@ -8,7 +8,9 @@ use gdcm_files::figure::{ConditionSource, decimals, uncertainty_bands};
 use super::frequency::{bode_curves, frequency_plot_ui};
 use crate::view::command::Command;
 use crate::view::palette::Palette;
-use crate::view::plot::{BodeBand, BodeCurve, BodeQuantity, BodeScene, Pane, PaneNote, ResponsePlace, Role};
+use crate::view::plot::{
+    BodeBand, BodeCurve, BodeQuantity, BodeScene, InvalidRegion, Pane, PaneNote, ResponsePlace, Role,
+};
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
@@ -29,6 +31,7 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let bands = uncertainty_bands(state.dataset(), pair, &curves);
     let shows_bands = (!bands.is_empty()).then_some(display.shows_bands);
     let missing = missing_phase(&curves, (band.min(), band.max()));
+    let invalid = invalid_region(state, &curves);
     let notes = notes(state, pair);
     let notes = notes.as_ref().map_or([None; 2], |notes| [Some(&notes[0]), Some(&notes[1])]);
     let (band, message) = ((band.min(), band.max()), state.curves_message());
@@ -37,6 +40,7 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         bands: &bands,
         shows_bands,
         missing: missing.as_ref(),
+        invalid: invalid.as_ref(),
         notes,
         message,
         ..BodeScene::of(&title, &curves, band)
@@ -45,6 +49,21 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     state.display.error.share_frequencies(&view);
     state.display.bode = view;
     state.display.drawn = curves;
+}
+
+/// Where the curves are drawn only to show the price of leads: none without leads (M15.6).
+fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
+    let leads = &state.shown()?.compensated.as_ref()?.leads;
+    leads.filters().iter().find_map(|(_, filter)| *filter)?;
+    let last = |role: Role| curves.iter().find(|curve| !curve.hidden && curve.role == role).map(|curve| &curve.omega);
+    let up_to = *last(Role::Corrected)?.last()?;
+    let end = |role: Role| {
+        let curve = curves.iter().find(|curve| !curve.hidden && curve.role == role)?;
+        curve.value_at(Pane::Magnitude, up_to)
+    };
+    let ends_db = end(Role::Corrected).zip(end(Role::WithoutLeads)).map(|(with, without)| [with, without]);
+    let words = format!("not valid above {}", unit_words(state, state.study.settings.band.max()));
+    Some(InvalidRegion { up_to, words, ends_db })
 }
 
 /// The phase between the corrected and the identified model, within the band \[rad/s\].

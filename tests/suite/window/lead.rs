@@ -2,8 +2,10 @@
 
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
-use gdcm_core::study::{AssessedCorrection, PhaseCorrection};
+use gdcm_core::study::{AssessedCorrection, PhaseCorrection, setting};
+use gdcm_core::units::signed;
 
+use super::lists::texts_in;
 use super::views::{give, show};
 use super::*;
 use gdcm::view::Sheet;
@@ -13,6 +15,29 @@ fn choose(window: &mut Window, list: &str, choice: &str) {
     window.get_by_role_and_label(Role::ComboBox, list).click();
     window.run_steps(3);
     click(window, choice);
+}
+
+#[test]
+fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_it_says_nothing() {
+    let mut window = window();
+    let last = |window: &Window, role: CurveRole| {
+        let curve = drawn(window, role);
+        let known = curve.omega.iter().zip(curve.magnitude_db.iter()).filter(|(_, db)| db.is_finite());
+        known.map(|(omega, _)| *omega).last().unwrap()
+    };
+    // A little beyond the band of 0.5 to 12 rad/s.
+    assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);
+    let before = state(&window).display.bode.omega_range().1;
+    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    assert!((last(&window, CurveRole::Corrected) - 120.0).abs() < 1e-6);
+    let flight = last(&window, CurveRole::IdentifiedRepresentative);
+    assert!(flight <= 20.4 * (1.0 + 1e-9) && flight > 20.0, "{flight}");
+    assert!((before - 20.4).abs() < 1e-6 && (state(&window).display.bode.omega_range().1 - 120.0).abs() < 1e-6);
+    let texts: Vec<String> = texts_in(&window, egui::Rect::EVERYTHING).into_iter().map(|(text, _)| text).collect();
+    assert!(texts.iter().any(|text| text == "not valid above 12 rad/s"), "{texts:?}");
+    let at_end = |role| drawn(&window, role).value_at(Pane::Magnitude, 120.0).unwrap();
+    let price = format!("{} dB", signed(at_end(CurveRole::Corrected) - at_end(CurveRole::WithoutLeads), 1));
+    assert!(texts.contains(&price), "{price} in {texts:?}");
 }
 
 #[test]
@@ -65,10 +90,11 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
     choose(&mut window, "Phase correction", "delay or lead");
     let (with, without) = (drawn(&window, CurveRole::Corrected), drawn(&window, CurveRole::WithoutLeads));
     let top = state(&window).study.settings.band.max();
-    let at_top = with.omega.iter().position(|omega| *omega >= top).unwrap();
-    assert!(with.phase_deg[at_top] > without.phase_deg[at_top] + 10.0, "lead turns the phase up");
-    // The gains differ a little, the phase is that of gains alone: the example's delays are none.
-    assert!((without.phase_deg[at_top] - gains_alone.phase_deg[at_top]).abs() < 1e-9);
+    let phase = |curve: &BodeCurve| curve.value_at(Pane::Phase, top).unwrap();
+    assert!(phase(&with) > phase(&without) + 10.0, "lead turns the phase up");
+    // The gains differ a little, the phase is that of gains alone: the example's delays are none. Between two frequencies of
+    // either grid a phase is interpolated, and is 0.01 degrees off.
+    assert!((phase(&without) - phase(&gains_alone)).abs() < 0.05);
     give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
     let told = window.query_all_by_label_contains("as if a servo of").count();
     assert_eq!(told, 10, "a sentence for each channel");

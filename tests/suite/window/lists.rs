@@ -18,7 +18,7 @@ fn narrow_window(height: f32) -> Window {
 }
 
 /// The texts painted in the last frame whose place is inside `area`, each with its place; none of what a sheet covers there.
-fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
+pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::Rect)> {
     let shapes = &window.output().shapes;
     let covers = |clipped: &egui::epaint::ClippedShape| match &clipped.shape {
         egui::Shape::Rect(rect) => rect.fill.is_opaque() && rect.rect.contains_rect(area),

@@ -126,14 +126,26 @@ impl ResponseShape {
         Self { magnitude_db: shape.0.into(), phase_deg: shape.1.into() }
     }
 
-    /// The shape moved by whole turns as near to `reference` as they bring it (M2).
-    pub fn phase_aligned(self, reference: &Self) -> Self {
-        let radians = |phase: &[f64]| phase.iter().map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
+    /// The shape moved by whole turns as near to `reference` as they bring it over the first `points` frequencies (M2).
+    pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
+        let radians =
+            |phase: &[f64]| phase.iter().take(points).map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
         let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
         if offset == 0.0 {
             return self;
         }
         Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
+    }
+
+    /// The shape over the first `points` frequencies; not a number at the others.
+    pub fn first(self, points: usize) -> Self {
+        if points >= self.phase_deg.len() {
+            return self;
+        }
+        let cut = |values: &[f64]| -> Arc<[f64]> {
+            values.iter().enumerate().map(|(k, value)| if k < points { *value } else { f64::NAN }).collect()
+        };
+        Self { magnitude_db: cut(&self.magnitude_db), phase_deg: cut(&self.phase_deg) }
     }
 
     /// The shape after a correction (M10).
@@ -264,7 +276,7 @@ mod response_shape_tests {
     #[test]
     fn a_shape_is_moved_by_whole_turns_only() {
         let shape = |phase: f64| ResponseShape { magnitude_db: [0.0, 0.0].into(), phase_deg: [phase, phase].into() };
-        let laid = shape(350.0).phase_aligned(&shape(-20.0));
+        let laid = shape(350.0).phase_aligned(&shape(-20.0), usize::MAX);
         assert!((laid.phase_deg[0] + 10.0).abs() < 1e-12);
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::{Cancelled, Execution, Memo};
+use super::{ABOVE_BAND, Cancelled, Execution, Memo, PhaseCorrection, Settings};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -192,4 +192,13 @@ pub const CURVE_POINTS: usize = 500;
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
     Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
+}
+
+/// The frequencies of the curves of a condition: [`display_band`], and up to ten times the band where leads are to show what they cost
+/// above it (M15.6).
+pub fn curves_band(settings: &Settings) -> Band {
+    let usual = display_band(settings.band);
+    let has_leads = settings.phase == PhaseCorrection::Lead;
+    let top = settings.band.max() * if has_leads { ABOVE_BAND } else { 1.0 };
+    Band::beyond(usual.min(), usual.max().max(top)).unwrap_or(usual)
 }

@@ -101,8 +101,8 @@ impl LeadOffer {
 const APART_S: f64 = 0.02;
 /// Signed delays below this \[s\] are nothing to correct.
 const NOTHING_S: f64 = 2e-3;
-/// Multiple of the band's top at which the price is told.
-const ABOVE: f64 = 10.0;
+/// Multiple of the band's top up to which the price of leads is told and drawn.
+pub const ABOVE_BAND: f64 = 10.0;
 
 /// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
 /// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
@@ -140,13 +140,13 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     };
     let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
     let replaced = filters().map(|(channel, filter)| {
-        let at_above = filter.magnitude_db(ABOVE * top);
+        let at_above = filter.magnitude_db(ABOVE_BAND * top);
         format!(
             "{}: {}; {} dB at {} rad/s",
             channel.name(&inputs, &outputs),
             servo_words(filter),
             signed(at_above, 1),
-            number(ABOVE * top)
+            number(ABOVE_BAND * top)
         )
     });
     let states: usize = filters().map(|(_, filter)| filter.order().number()).sum();

@@ -21,6 +21,8 @@ use super::units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 const BAND: Color = Color::of(Hue::Accent).tint(8);
 /// The ground of frequencies where what is left would be noticed.
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
+/// The ground of frequencies above the band where there are leads.
+const INVALID: Color = Color::of(Hue::Warning).tint(10);
 /// Around an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
 /// Height of the magnitude, where that of the phase is 1.
@@ -71,6 +73,12 @@ impl BodeOptions {
     fn band(&self, band: BandOfComparison) -> Band {
         let range = self.in_unit(band.min(), band.max());
         Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
+    }
+
+    /// The ground of the frequencies above the band where a model with leads is not valid.
+    fn invalid(&self, band: BandOfComparison, up_to: f64) -> Band {
+        let range = self.in_unit(band.max(), up_to);
+        Band { along: Along::X, range, color: INVALID, key: Some("not valid with leads".to_owned()) }
     }
 }
 
@@ -207,8 +215,12 @@ fn plot(
     ratio_unit: &str,
 ) -> Plot {
     let visible: Vec<BodeCurve> = curves.iter().filter(|curve| !curve.hidden).cloned().collect();
+    // What leads cost is drawn as far as the curves without them go (M15.6).
+    let without_leads = visible.iter().find(|curve| curve.role == Role::WithoutLeads);
+    let invalid = without_leads.and_then(|curve| curve.omega.last().copied());
     let needed = |pane, least| {
-        fitted_values(&visible, pane, (band.min(), band.max())).map(|range| range.with_margin(MARGIN, least))
+        fitted_values(&visible, pane, (band.min(), invalid.unwrap_or(band.max())))
+            .map(|range| range.with_margin(MARGIN, least))
     };
     let magnitude_db = options.values[0].or_else(|| needed(Pane::Magnitude, 4.0));
     let phase_deg = options.values[1].or_else(|| needed(Pane::Phase, 20.0));
@@ -222,8 +234,11 @@ fn plot(
         }
     };
     let phase = panels.panel(Pane::Phase, Axis::degrees("Phase [deg]").showing(phase_deg));
-    let ground = || options.band(band);
-    Plot::default().panel(magnitude.over(ground()).weight(MAGNITUDE_WEIGHT)).panel(phase.over(ground()))
+    let on_ground = |panel: Panel| match invalid {
+        Some(up_to) => panel.over(options.invalid(band, up_to)).over(options.band(band)),
+        None => panel.over(options.band(band)),
+    };
+    Plot::default().panel(on_ground(magnitude).weight(MAGNITUDE_WEIGHT)).panel(on_ground(phase))
 }
 
 /// The responses `pairs` of one model of every condition: a magnitude above a phase each, from blue for the slowest condition to

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use gdcm_core::dataset::{BundleKind, Dataset, ModelBands, ModelId, Pair};
+use gdcm_core::dataset::{Band as BandOfComparison, BundleKind, Dataset, ModelBands, ModelId, Pair};
 use gdcm_core::identification::TWO_SIDED_95;
 use gdcm_core::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
-use gdcm_core::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves};
+use gdcm_core::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves, display_band};
 
 use super::axis::Range;
 use super::bode::BodeOptions;
@@ -21,7 +21,7 @@ impl ConditionSource<'_> {
     /// Every curve of one response, hidden ones too; phases are laid on that of the reference. `cache` keeps their numbers, and where
     /// they are in memory, while nothing of them changes.
     pub fn response_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ResponseCache) -> Vec<BodeCurve> {
-        cache.refresh(self.curves, pair, self.reference());
+        cache.refresh(self.curves, pair, self.reference(), self.study.settings.band);
         let mut drawn = Vec::new();
         let mut draw = |cache: &ResponseCache, curve: BodeCurve, shape: ResponseShape| {
             let turns = options.turns.get(&(self.id(), pair, curve.id.clone())).copied().unwrap_or(0);
@@ -73,8 +73,9 @@ fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> 
 }
 
 impl ResponseCache {
-    /// Makes the shapes of `pair`; phases are laid on that of the identified model `reference`.
-    fn refresh(&mut self, curves: &Arc<ConditionCurves>, pair: Pair, reference: usize) {
+    /// Makes the shapes of `pair`; phases are laid on that of the identified model `reference` around the band. Beyond that the
+    /// identified models, which say nothing there, end.
+    fn refresh(&mut self, curves: &Arc<ConditionCurves>, pair: Pair, reference: usize, band: BandOfComparison) {
         let same = |(made_of, of_pair, of_reference): &(Arc<ConditionCurves>, Pair, usize)| {
             Arc::ptr_eq(made_of, curves) && *of_pair == pair && *of_reference == reference
         };
@@ -82,14 +83,15 @@ impl ResponseCache {
             return;
         }
         let reference_shape = ResponseShape::of(curves.identified[reference].curve(pair));
-        let shapes = |kind| {
-            let laid = |response: &Arc<FrequencyResponse>| {
-                ResponseShape::of(response.curve(pair)).phase_aligned(&reference_shape)
-            };
-            curves.bundle(kind).iter().map(laid).collect()
+        // The last frequency of a grid may be a rounding error beyond its end.
+        let limit = display_band(band).max() * (1.0 + 1e-9);
+        let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
+        let laid = |response: &Arc<FrequencyResponse>| {
+            ResponseShape::of(response.curve(pair)).phase_aligned(&reference_shape, points)
         };
-        self.physics = shapes(BundleKind::Physics);
-        self.identified = shapes(BundleKind::Identified);
+        let shapes = |kind| curves.bundle(kind).iter().map(&laid);
+        self.physics = shapes(BundleKind::Physics).collect();
+        self.identified = shapes(BundleKind::Identified).map(|shape| shape.first(points)).collect();
         self.omega = curves.grid.omega().into();
         self.made_of = Some((Arc::clone(curves), pair, reference));
     }
@@ -156,7 +158,7 @@ impl AirspeedCache {
         let shape = |(id, response): &(ModelId, Arc<FrequencyResponse>)| {
             let shape = ResponseShape::of(response.curve(pair));
             let shape = match &first {
-                Some(first) => shape.phase_aligned(first),
+                Some(first) => shape.phase_aligned(first, usize::MAX),
                 None => shape,
             };
             first.get_or_insert_with(|| shape.clone());

@@ -7,7 +7,7 @@ use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, ModelI
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{
     Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress, RemarkKind, Study, Table,
-    Unobserved, details, display_band, lead_words, remarks,
+    Unobserved, curves_band, details, lead_words, remarks,
 };
 use gdcm_core::units::{number, s_to_ms, signed};
 
@@ -67,7 +67,7 @@ fn draw(
     (engine, progress): (&mut Engine, &dyn Progress),
 ) -> Result<(), Cancelled> {
     let study = &analysis.study;
-    let grid = (display_band(study.settings.band), CURVE_POINTS);
+    let grid = (curves_band(&study.settings), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();

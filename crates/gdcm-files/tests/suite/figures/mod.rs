@@ -4,7 +4,7 @@ use std::sync::{Arc, LazyLock};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, display_band};
+use gdcm_core::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, curves_band};
 use gdcm_files::figure::{
     Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
     Panel, Plot, Range, Stroke, all_channels,
@@ -28,7 +28,7 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     study.apply(&Edit::reject_physics(CONDITION, &models)).unwrap();
     let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
-    let grid = (display_band(study.settings.band), CURVE_POINTS);
+    let grid = (curves_band(&study.settings), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
     Example { analysis, curves }
 });

@@ -186,7 +186,7 @@ fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, comma
     const LEAST: f32 = 200.0;
     let kind = view.kind();
     let width = ui.available_width();
-    let is_titled = kind.title != ViewTitle::None;
+    let is_titled = !matches!(kind.title, ViewTitle::None);
     if is_titled && width - kind.tools_width < LEAST && kind.tools_width > 0.0 {
         row_ui(ui, width, |ui| title_ui(ui, state, kind.title, palette));
         row_ui(ui, width, |ui| tools_ui(ui, state, view, palette, commands));
@@ -236,6 +236,7 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
             heading(ui, &format!("Condition {}", condition.id()));
             ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
         }
+        ViewTitle::Words(words) => drop(ui.add(egui::Label::new(palette.dim(words(state))).truncate())),
         ViewTitle::None => {}
     }
 }
@@ -304,6 +305,8 @@ fn dock_head_ui(
                     }
                 }
             }
+            ui.add_space(4.0);
+            title_ui(ui, state, view.kind().title, palette);
         });
     });
 }

@@ -205,6 +205,12 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
     painted_text(ui, row, x, text, FontId::proportional(size), color)
 }
 
+/// A button of this text and accessible name that is on or off; gives whether it was clicked.
+pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &str) -> bool {
+    let button = Button::new(text).selected(is_on).corner_radius(6.0);
+    named_switch(ui.add(button), Role::CheckBox, is_on, name).on_hover_text(hint).clicked()
+}
+
 /// A heading on the left, a value on the right.
 pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, value: &str) -> egui::Response {
     ui.add_space(4.0);

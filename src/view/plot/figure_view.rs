@@ -11,7 +11,7 @@ use gdcm_core::study::ExplainTarget;
 use gdcm_files::figure::{Along, Area, Dots, Figure, Mark, MarkId, Panel, Plot, Range, Shape, dot_shapes};
 
 use super::axes::{
-    LABELLED_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,
+    LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,
     use_frame_colors,
 };
 use super::canvas::{Canvas, LETTERS_PT, area};
@@ -19,7 +19,7 @@ use super::curve_menu::{NamedFigure, Questions};
 use super::navigation::turned;
 use super::readout::tooltip_ui;
 use super::tiles::{Tiles, tiles_ui};
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::palette::{Palette, SMALL_SIZE, medium};
 
 const TITLE_HEIGHT: f32 = 18.0;
 const RIGHT_MARGIN: f32 = 8.0;
@@ -27,6 +27,8 @@ const RIGHT_MARGIN: f32 = 8.0;
 const LABEL_STRIP: f32 = 16.0;
 /// Width of a vertical axis \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 38.0;
+/// Beside the last plot of a compact figure: the unit of its axis \[pt\].
+const UNIT_MARGIN: f32 = 14.0;
 /// Least distance between the ticks of an axis \[pt\].
 const TICK_GAP: f64 = 26.0;
 /// How far from a dot the pointer may be to mean it \[pt\].
@@ -75,6 +77,10 @@ pub struct FigureScene<'a> {
     pub least: Vec2,
     /// What to say where there is nothing to draw.
     pub message: &'a str,
+    /// Whether the vertical axis stands once, at the left of each row, and the unit of the other one at its end.
+    pub is_compact: bool,
+    /// The plot of what is in focus: it has a bar of accent.
+    pub accented: Option<usize>,
     /// What the plots say, and the number by which they know the first one here.
     pub words: (&'a dyn FigureWords, usize),
 }
@@ -107,19 +113,12 @@ struct PlotView {
     /// The panel, the part of the screen and the ranges that the shapes are for: placing labels costs more than drawing them.
     drawn_for: Option<(Panel, Area, [Range; 2])>,
     shapes: Vec<Shape>,
-    /// How many labels have no room.
-    left_out: usize,
 }
 
 impl FigureView {
     /// Shows all of the plots at the next frame.
     pub fn request_fit(&mut self) {
         self.plots.iter_mut().for_each(|plot| plot.ranges = None);
-    }
-
-    /// Whether a label has no room and is only told where its dot is pointed at.
-    pub fn leaves_labels_out(&self) -> bool {
-        self.plots.iter().any(|plot| plot.left_out > 0)
     }
 
     /// What was in view of a plot when it was drawn last.
@@ -179,7 +178,10 @@ pub fn figure_within_ui(
     ui.scope_builder(UiBuilder::new().id_salt(scene.name).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
         let mut inner = rect;
-        if let Some(label) = common_label(scene.figure) {
+        if scene.is_compact {
+            inner.min.x += VALUE_AXIS_WIDTH;
+            inner.max.x -= UNIT_MARGIN;
+        } else if let Some(label) = common_label(scene.figure) {
             inner.min.x += LABEL_STRIP;
             upright_label_ui(ui, rect, label, palette);
         }
@@ -233,17 +235,20 @@ fn plot_ui(
 ) -> (Response, Option<(MarkId, [f64; 2])>) {
     let Plot { title, panels } = &scene.figure.plots[index];
     let (panel, words, number) = (&panels[0], scene.words.0, scene.words.1 + index);
-    let plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let mut plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let has_values = !scene.is_compact || rect.left() - ui.max_rect().left() < 0.5 * rect.width();
+    if scene.is_compact && has_values {
+        plot_rect.min.x -= VALUE_AXIS_WIDTH;
+    }
     let [x, y] = kept.ranges.unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
-        frame(ui, (id, plot_rect.size()), panel, scene, palette).show(ui, |plot| {
+        frame(ui, (id, plot_rect.size()), panel, (scene, has_values), palette).show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
         })
     });
     let (response, transform) = (shown.inner.response, shown.inner.transform);
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, words.plot(number)));
-    let place = pos2(transform.frame().center().x, rect.top() + 0.5 * TITLE_HEIGHT);
-    ui.painter().text(place, Align2::CENTER_CENTER, title, caption_font(), palette.text);
+    title_ui(ui, (title, panel), *transform.frame(), scene, index, palette);
     kept.transform = Some(transform);
     let pointer = response.hover_pos().or(response.interact_pointer_pos().filter(|_| response.clicked()));
     let pointed = pointer.and_then(|pointer| match scene.columns {
@@ -268,6 +273,30 @@ fn plot_ui(
         kept.navigate(&response, pointed.is_some());
     }
     (response, pointed)
+}
+
+/// The name of a plot over it, with a bar of accent where it is in focus; beside the last one the unit of the horizontal axis.
+fn title_ui(
+    ui: &Ui,
+    (title, panel): (&str, &Panel),
+    frame: Rect,
+    scene: &FigureScene<'_>,
+    index: usize,
+    palette: &Palette,
+) {
+    let is_accented = scene.accented == Some(index);
+    let quiet = if scene.is_compact { palette.dim_text } else { palette.text };
+    let (font, color) = if is_accented { (medium(SMALL_SIZE), palette.text) } else { (caption_font(), quiet) };
+    let place = pos2(frame.center().x, frame.top() - 0.5 * TITLE_HEIGHT);
+    ui.painter().text(place, Align2::CENTER_CENTER, title, font, color);
+    if is_accented {
+        ui.painter().hline(frame.x_range(), frame.top() - 1.0, Stroke::new(2.0, palette.accent));
+    }
+    if scene.is_compact && index + 1 == scene.figure.plots.len() {
+        let unit = panel.x.label.split(['[', ']']).nth(1).unwrap_or_default();
+        let at = pos2(frame.right() + 6.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
+        ui.painter().text(at, Align2::LEFT_CENTER, unit, caption_font(), palette.dim_text);
+    }
 }
 
 /// The nearest dot that is one of something; of equally near ones the one on top, which is drawn last.
@@ -298,7 +327,7 @@ impl PlotView {
         let (area, ranges) = (area(frame), [0, 1].map(|axis| Range::new(min[axis], max[axis])));
         let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| (of, at, shown) == (panel, &area, &ranges);
         if !self.drawn_for.as_ref().is_some_and(is_same) {
-            (self.shapes, self.left_out) = panel.shapes(area, ranges, LETTERS_PT);
+            (self.shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
             self.drawn_for = Some((panel.clone(), area, ranges));
         }
         let painter = ui.painter().with_clip_rect(frame.expand(RING).intersect(ui.clip_rect()));
@@ -357,7 +386,13 @@ impl PlotView {
 }
 
 /// The frame with its axes.
-fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene<'_>, palette: &Palette) -> Frame<'a> {
+fn frame<'a>(
+    ui: &Ui,
+    (id, size): (Id, Vec2),
+    panel: &Panel,
+    (scene, has_values): (&FigureScene<'_>, bool),
+    palette: &Palette,
+) -> Frame<'a> {
     let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
     let (is_named, values) = (!names.is_empty(), Ticks::Decimal(TICK_GAP));
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
@@ -367,7 +402,8 @@ fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene
         true => named_marks(&input, count, widest),
         false => values.marks(input.bounds, input.base_step_size),
     };
-    let across = axis_hints(Side::X, &panel.x.label, LABELLED_HEIGHT, palette, values);
+    let (words, height) = if scene.is_compact { ("", TICKS_HEIGHT) } else { (panel.x.label.as_str(), LABELLED_HEIGHT) };
+    let across = axis_hints(Side::X, words, height, palette, values);
     let across = match is_named {
         true => across.formatter(move |mark, _: &RangeInclusive<f64>| {
             names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default()
@@ -383,7 +419,10 @@ fn frame<'a>(ui: &Ui, (id, size): (Id, Vec2), panel: &Panel, scene: &FigureScene
         .x_grid_spacer(spacer)
         .y_grid_spacer(values.spacer())
         .custom_x_axes(vec![across])
-        .custom_y_axes(vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, values)]);
+        .custom_y_axes(match has_values {
+            true => vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, values)],
+            false => Vec::new(),
+        });
     if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
 }
 

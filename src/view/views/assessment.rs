@@ -105,6 +105,8 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
         highlighted: None,
         columns: &ids,
         zooms: false,
+        is_compact: false,
+        accented: None,
         least: LEAST_PLOT,
         message: "No response of this kind: choose others above",
         words: (&plots, 0),

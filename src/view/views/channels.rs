@@ -30,7 +30,7 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
         (Measure::Delay, "delays", "Delay τ of every channel [ms], its bounds, and 0: no correction"),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
-    bars_switch_ui(ui, state, "bars of the channels", commands);
+    bars_switch_ui(ui, state, ("bars", "bars of the channels"), commands);
     if (measure, across) != shown {
         commands.push(Command::ShowChannels(measure, across));
     }
@@ -119,6 +119,8 @@ impl GainPlots<'_> {
             highlighted: None,
             columns: &[],
             zooms: false,
+            is_compact: false,
+            accented: None,
             least: LEAST_PLOT,
             message,
             words: (self, 0),

@@ -203,6 +203,7 @@ impl View {
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 long_name: "Net gain over airspeed",
+                title: ViewTitle::Words(net_gain_words),
                 tools: net_gain_header_ui,
                 tools_width: NET_GAIN_CONTROLS,
                 is_of_all_conditions: true,
@@ -273,7 +274,7 @@ impl ViewKind {
 }
 
 /// What the header of a view says of what is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
     /// Nothing.
     None,
@@ -283,6 +284,8 @@ pub enum ViewTitle {
     Response,
     /// The response in focus.
     Focus,
+    /// These words.
+    Words(fn(&State) -> String),
 }
 
 /// What a view has to have computed beside the live answer.

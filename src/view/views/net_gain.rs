@@ -1,67 +1,61 @@
 //! Net gains against airspeed, and the form of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
-use egui::{Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
+use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::setting;
-use gdcm_files::figure::{Across, Classes, GainQuantity, net_gain_figure};
+use gdcm_files::figure::{Across, GainQuantity, MarkId, net_gain_figure, quieten, schedule_words};
 use serde::{Deserialize, Serialize};
 
 use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
+use crate::view::controls::{named, toggle_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{FigureView, figure_ui};
+use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_ui};
 
-/// The key of the dots is not narrower \[pt\].
-const LEAST_KEY: f32 = 120.0;
 /// Room \[pt\] in which the controls of this view stand in one line.
-pub const NET_GAIN_CONTROLS: f32 = 760.0;
+pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// What the plots show, the form of the schedule, and the key of the dots, laid out from right to left; behind a button where they
-/// have no room.
-pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    if ui.available_width() < NET_GAIN_CONTROLS {
-        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
-        MenuButton::new("Schedule ▾").config(config).ui(ui, |ui| controls_ui(ui, state, palette, commands));
-    } else {
-        controls_ui(ui, state, palette, commands);
-    }
-    // A few letters of the key say nothing.
-    if ui.available_width() > LEAST_KEY {
-        let key = dot_key(state);
-        let text = RichText::new(&key).size(SMALL_SIZE).color(palette.dim_text);
-        ui.add(egui::Label::new(text).truncate()).on_hover_text(key);
-    }
+/// What the plots show, in words.
+pub fn net_gain_words(state: &State) -> String {
+    let level = 100.0 * state.study.settings.uncertainty.level;
+    let bars = if state.display.hide_bars { String::new() } else { format!(", bars of {level:.0} %") };
+    format!("k of output times k of input, {} responses{bars}", state.display.net_gain_pairs.name())
 }
 
-fn controls_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    schedule_ui(ui, state, palette, commands);
-    ui.label(RichText::new("schedule").size(SMALL_SIZE).color(palette.dim_text));
-    let mut shown = state.display.show_evidence;
-    let hint =
-        "What each form of the schedule misses, residuals and coefficients, so that a degree is chosen on evidence";
-    if ui.checkbox(&mut shown, "evidence").on_hover_text(hint).changed() {
-        commands.push(Command::ShowEvidence(shown));
+/// What the plots show, and the form of the schedule, laid out from right to left.
+pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let shown = state.display.show_evidence;
+    let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
+                chosen on evidence";
+    if toggle_ui(ui, ("evidence", "evidence"), shown, hint) {
+        commands.push(Command::ShowEvidence(!shown));
     }
-    bars_switch_ui(ui, state, "error bars", commands);
+    bars_switch_ui(ui, state, ("bars", "error bars"), commands);
+    let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let form = schedule_words(&state.study.settings.schedule);
+    let text = format!("{} \u{25be}", form.strip_prefix("polynomial of ").unwrap_or(&form));
+    let button = MenuButton::from_button(Button::new(text).frame(false)).config(config);
+    let (button, _) = button.ui(ui, |ui| schedule_ui(ui, state, palette, commands));
+    named(button, Role::Button, "Form of the schedule").on_hover_text("The form of the schedule over airspeed");
     pair_set_ui(ui, state, commands);
 }
 
-/// The switch of error bars and bands, by this name.
-pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, name: &str, commands: &mut Vec<Command>) {
-    let mut shown = !state.display.hide_bars;
+/// The switch of error bars and bands, by this text and name.
+pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, names: (&str, &str), commands: &mut Vec<Command>) {
+    let shown = !state.display.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
         "Bars of {level:.0} %: thick for the physics model chosen (identification), thin with not knowing the trim flown. Bands of the \
          schedule: where it may lie, and where another condition would fall"
     );
-    if ui.checkbox(&mut shown, name).on_hover_text(hint).changed() {
-        commands.push(Command::ShowBars(shown));
+    if toggle_ui(ui, names, shown, &hint) {
+        commands.push(Command::ShowBars(!shown));
     }
 }
 
@@ -102,8 +96,11 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
     let mut view = state.display.figures.remove(&View::NetGain).unwrap_or_default();
-    let plots = net_gain_plots(state);
-    let scene = plots.scene("net gain", &plots.figure, message);
+    let mut plots = net_gain_plots(state);
+    let selected = MarkId::Condition(state.condition().id());
+    quieten(&mut plots.figure, &selected, state.display.show_evidence);
+    let accented = net_gain_pairs(state).iter().position(|pair| *pair == state.display.pair);
+    let scene = FigureScene { is_compact: true, accented, ..plots.scene("net gain", &plots.figure, message) };
     let events = figure_ui(ui, &scene, &mut view, palette);
     commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
     state.display.figures.insert(View::NetGain, view);
@@ -143,19 +140,23 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.evidence_sorting = sorting;
 }
 
-/// The form of the schedule. Laid out from right to left.
+/// What the form of the schedule is made of, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
-        &setting::SCHEDULED_QUANTITY,
         &setting::SCHEDULE,
+        &setting::SCHEDULED_QUANTITY,
         &setting::SECOND_VARIABLE,
-        &setting::AIRSPEED_TOLERANCE,
         &setting::SCHEDULE_DELAYS,
         &setting::TAU_DEGREE,
+        &setting::AIRSPEED_TOLERANCE,
     ];
-    for setting in rows.into_iter().filter(|setting| (setting.control.applies)(&state.study)) {
-        setting_ui(ui, state, setting, palette, commands);
-    }
+    Grid::new("form of the schedule").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
+        for setting in rows.into_iter().filter(|setting| (setting.control.applies)(&state.study)) {
+            ui.label(palette.dim(setting.control.label));
+            setting_ui(ui, state, setting, palette, commands);
+            ui.end_row();
+        }
+    });
 }
 
 /// Which responses the plots of net gain show.
@@ -226,23 +227,4 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     }
     let quantities = pairs.into_iter().map(GainQuantity::net_gain).collect();
     GainPlots { state, figure: figure.with_ranges(), quantities, across: Across::Airspeed }
-}
-
-/// What shapes and fills of the dots mean: "altitude ● low ◆ high · weight filled low, open high", where the dataset has classes; and
-/// where numbers are that have no room.
-pub fn dot_key(state: &State) -> String {
-    let classes = Classes::of(state.dataset());
-    let mut words = Vec::new();
-    if let Some((first, others)) = classes.altitudes.split_first() {
-        let others = if others.is_empty() { String::new() } else { format!(" ◆ {}", others.join(", ")) };
-        words.push(format!("altitude ● {first}{others}"));
-    }
-    if let Some((first, others)) = classes.weights.split_first() {
-        let others = if others.is_empty() { String::new() } else { format!(", open {}", others.join(", ")) };
-        words.push(format!("weight filled {first}{others}"));
-    }
-    if state.display.figures.get(&View::NetGain).is_some_and(FigureView::leaves_labels_out) {
-        words.push("number without room: point at the dot".to_owned());
-    }
-    words.join(" · ")
 }

@@ -59,6 +59,8 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         highlighted: state.display.hovered.clone().map(MarkId::Model),
         columns: &[],
         zooms: true,
+        is_compact: false,
+        accented: None,
         least: LEAST_PLOT,
         message,
         words: (&words, 0),

@@ -1,6 +1,5 @@
 //! What the lists say, and that it can be read.
 
-use gdcm::view::views::dot_key;
 use gdcm_core::study::Edit;
 
 use super::views::give;
@@ -112,12 +111,6 @@ fn a_condition_left_out_of_the_schedule_says_so_and_its_menu_takes_it_in_again()
     assert!(window.query_by_label_contains(", left out of the schedule").is_none());
     let edit = Edit::SetScheduled { condition: ConditionId(3), scheduled: true };
     assert_eq!(state(&window).history.undo_label(), Some(edit.label(&state(&window).study).as_str()));
-}
-
-#[test]
-fn the_key_of_the_dots_names_every_class() {
-    let window = window();
-    assert_eq!(dot_key(state(&window)), "altitude ● low ◆ high · weight filled low, open high");
 }
 
 #[test]

@@ -374,7 +374,7 @@ pub static SCHEDULE: Setting = row(
         |of, index| of.schedule.kind = ScheduleKind::ALL[index],
     ),
 )
-.at(Place::Elsewhere, "", "Schedule");
+.at(Place::Top, "Schedule", "Schedule");
 
 /// What is regressed on airspeed.
 pub static SCHEDULED_QUANTITY: Setting = row(
@@ -389,7 +389,7 @@ pub static SCHEDULED_QUANTITY: Setting = row(
         |of, index| of.schedule.quantity = ScheduledQuantity::ALL[index],
     ),
 )
-.at(Place::Elsewhere, "", "Scheduled quantity");
+.at(Place::Beside, "", "Scheduled quantity");
 
 /// Whether delays are scheduled too.
 pub static SCHEDULE_DELAYS: Setting = row(
@@ -401,7 +401,7 @@ pub static SCHEDULE_DELAYS: Setting = row(
         set: |of, delays| of.schedule.delays = delays,
     },
 )
-.at(Place::Elsewhere, "", "delays too")
+.at(Place::Line, "Over airspeed", "delays too")
 .where_it(|study| !has_leads(study));
 
 /// Degree of the polynomial of signed delays.
@@ -423,7 +423,7 @@ pub static TAU_DEGREE: Setting = row(
         |of, degree| of.schedule.tau_degree = degree,
     ),
 )
-.at(Place::Elsewhere, "", "Schedule of the signed delays")
+.at(Place::Line, "Over airspeed", "Schedule of the signed delays")
 .where_it(has_leads);
 
 /// Airspeeds this close to the next one are one \[kt\].
@@ -437,7 +437,7 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
     ),
 )
 .unit("kt", "kt", 1.0)
-.at(Place::Elsewhere, "", "Airspeed tolerance")
+.at(Place::Line, "One airspeed", "Airspeed tolerance")
 .digits(0.1, Digits::Decimals(1));
 
 /// What is scheduled beside airspeed.
@@ -454,7 +454,7 @@ pub static SECOND_VARIABLE: Setting = row(
         |of, index| of.schedule.second = <Option<SecondVariable>>::ALL[index],
     ),
 )
-.at(Place::Elsewhere, "", "Second variable of the schedule");
+.at(Place::Line, "Scheduled over", "Second variable of the schedule");
 
 /// Every setting but which responses are held and ignored, in the order in which they are told.
 pub static SETTINGS: [&Setting; 28] = [

@@ -189,8 +189,8 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     )
 }
 
-/// `degree 2 in ln k`.
-pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
+/// "polynomial of degree 2 of ln k".
+pub fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
         ScheduleKind::Table => "table".to_owned(),

@@ -13,7 +13,7 @@ use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, MarkId, Rule, Spans};
+use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId, Rule, Spans};
 use super::role::Role;
 use super::ticks::decimals;
 
@@ -136,6 +136,30 @@ pub fn net_gain_figure(analysis: &Analysis, uncertainty: Option<&Uncertainty>, p
     });
     let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
     figure.plots(plots).columns(5).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
+}
+
+/// Leaves of the numbers in plots of net gain that of the condition `selected`, and where differences are asked for, those of the pairs
+/// that differ significantly, with their brackets: what the screen shows, which tells the others where they are pointed at.
+pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
+    for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
+        panel.marks.retain(|mark| match mark {
+            Mark::Brackets(brackets) => shows_differences && brackets.name == BEYOND,
+            _ => true,
+        });
+        let differ: Vec<[f64; 2]> = panel
+            .marks
+            .iter()
+            .filter_map(|mark| if let Mark::Brackets(brackets) = mark { Some(&brackets.brackets) } else { None })
+            .flat_map(|brackets| brackets.iter().flat_map(|of| of.ends.map(|end| [of.x, end])))
+            .collect();
+        let dots =
+            panel.marks.iter_mut().filter_map(|mark| if let Mark::Dots(dots) = mark { Some(dots) } else { None });
+        for dot in dots.flat_map(|dots| &mut dots.dots) {
+            if dot.id.as_ref() != Some(selected) && !differ.contains(&[dot.x, dot.y]) {
+                dot.label.clear();
+            }
+        }
+    }
 }
 
 /// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).

@@ -60,6 +60,8 @@ fn harness(model: Model) -> Harness<'static, Model> {
                 highlighted: None,
                 columns: &model.columns,
                 zooms: model.zooms,
+                is_compact: false,
+                accented: None,
                 least: vec2(122.0, 120.0),
                 message: "Nothing to draw",
                 words: (&Numbers, 0),

@@ -354,13 +354,19 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 /// What lies over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(sheet) = state.display.sheet else { return };
+    let asked = state.display.asked.as_ref().map(|_| Sheet::Derivation);
+    let Some(sheet) = asked.or(state.display.sheet) else { return };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
+        Sheet::Derivation => explanation::derivation_sheet_ui(ui, state, palette, commands),
         Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
         Sheet::Models => models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands),
         Sheet::Identified => models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands),
     });
-    if is_closed {
+    // A click beside it may ask about another value: that is shown then.
+    let asks = commands.iter().any(|command| matches!(command, Command::Explain(_)));
+    if is_closed && sheet == Sheet::Derivation && !asks {
+        commands.push(Command::Explain(None));
+    } else if is_closed && !asks {
         commands.push(Command::ShowSheet(None));
     }
 }
@@ -415,7 +421,6 @@ impl eframe::App for GdcmApp {
         forms::forms_ui(&ctx, &mut self.state, &palette, &mut commands);
         help::tour_ui(&ctx, &self.state, &palette, &mut commands);
         focus::focus_ring_ui(&ctx, &palette);
-        explanation::derivation_window_ui(&ctx, &self.state, &palette, &mut commands);
         self.drawn.get_or_init(|| self.autosave.clone());
         self.carry_out(commands);
         self.name_window();

@@ -1,38 +1,35 @@
-//! How a value was computed and what decisions would cost: the window of a derivation, and the menus that open it.
+//! How a value was computed and what decisions would cost: the sheet of a derivation, and the menus that open it.
 
 use std::collections::BTreeSet;
 
-use egui::{Context, CursorIcon, Id, Label, Response, RichText, Sense, Ui, WidgetText, Window};
+use egui::{CursorIcon, Label, Response, RichText, Sense, Ui, WidgetText};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, SignRole, derivation, remarks};
 
-use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, State, entries_ui};
+use super::palette::{TITLE_SIZE, medium};
+use super::{Command, Palette, SMALL_SIZE, State, entries_ui};
 
 /// What asks for a derivation, everywhere.
 pub const QUESTION: &str = "How was this computed?";
 
-/// Shows how the value asked about was computed; it follows the results while it is open.
-pub fn derivation_window_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+/// How the value asked about was computed, in a sheet; it follows the results while it is open.
+pub fn derivation_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(asked) = &state.display.asked else { return };
-    let mut open = true;
     let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
-    let title = found.as_ref().map_or("There is no such value now", |found| found.title.as_str());
-    let window = Window::new(RichText::new(title).size(BODY_SIZE).strong());
-    let window = window.id(Id::unique("derivation")).open(&mut open).default_width(420.0).resizable(true);
-    window.show(ctx, |ui| match &found {
+    match &found {
         Some(found) => derivation_ui(ui, found, palette, commands),
         None => {
+            ui.label("There is no such value now");
             ui.label(state.results.absence());
         }
-    });
-    if !open {
-        commands.push(Command::Explain(None));
     }
 }
 
 fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &mut Vec<Command>) {
+    ui.label(RichText::new(&found.title).font(medium(TITLE_SIZE)));
+    ui.add_space(4.0);
     ui.label(RichText::new(&found.equation).monospace());
     ui.add_space(4.0);
     for step in &found.with_numbers {

@@ -22,8 +22,8 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Conditions,
         title: "Flight conditions",
-        words: "A click, or Up and Down, shows a condition. Its marks say what is still to do there: ⚠ 3 are three models \
-                suggested as outliers.",
+        words: "A click, or Up and Down, shows a condition. The map beside them says what the correction leaves of each held \
+                response: left magnitude, right phase, pale is matched. ⚠: models are suggested as outliers.",
     },
     Step {
         region: Region::Models,
@@ -40,21 +40,22 @@ const STEPS: [Step; 5] = [
     Step {
         region: Region::Matrix,
         title: "What is held",
-        words: "Each cell is a response: the gain and the delay that would match it, and its cost before and after. Filled \
-                cells are held exactly; the box, or the space bar, holds or releases one.",
+        words: "Each cell is a response: the gain and the delay that would match it, over its J of magnitude and of phase. In \
+                filled cells the gain is held exactly; the box, or the space bar, holds or releases one.",
     },
     Step {
-        region: Region::Result,
-        title: "The result, to be taken away",
-        words: "The gains and delays of every channel, whether gains and phase are met, and why. Export writes the corrections; Ctrl+Z \
-                takes any decision back; Ctrl+K finds every command.",
+        region: Region::Verdict,
+        title: "The verdict",
+        words: "Whether gain and phase of the held responses are met, here and in all conditions, and the one thing to do next. \
+                Green: both are. Ctrl+Z takes any decision back; Ctrl+K finds every command.",
     },
 ];
 
 /// The step that is shown, if any: a ring around its part of the window, and a note beside it.
 pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((number, step)) = state.tour.and_then(|number| Some((number, STEPS.get(number)?))) else { return };
-    if state.forms.shown.is_some() {
+    // Its notes are about the panels: it waits while there are none.
+    if state.forms.shown.is_some() || state.assembling.is_some() || state.on_start_page {
         return;
     }
     let window = ctx.content_rect();
@@ -124,7 +125,8 @@ const GESTURES: &[(&str, &str)] = &[
     ("Shift+drag", "select the curves that a box touches, to reject or restore them at once"),
     ("double click in a plot", "beside the curves: fit it; on an axis: type its limits"),
     ("right-click in a plot", "what can be done with the curve, or with the frequency there"),
-    ("click in a legend", "hide the curves of a role, or show them"),
+    ("click on a chip", "hide the curves of a role, or show them; Alt: show it alone; Shift: in front"),
+    ("1 to 9", "in a plot that has the focus: the same as a click on a chip"),
     ("Arrows, + −, Home", "in a plot that has the focus: move, zoom (Shift: frequencies only), fit"),
     ("Escape", "end the isolation of a model, and a selection"),
     ("drag an end of the band", "move the band of comparison"),

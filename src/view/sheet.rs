@@ -2,6 +2,7 @@
 
 use egui::{Align, Area, Frame, Id, Layout, Margin, Order, Rect, RichText, Role, ScrollArea, Stroke, Ui, vec2};
 
+use super::explanation::QUESTION;
 use super::palette::medium;
 use super::{BODY_SIZE, Palette, named, take_escape};
 
@@ -14,6 +15,8 @@ pub enum Sheet {
     Models,
     /// The identified models, beside the rail.
     Identified,
+    /// How a value was computed.
+    Derivation,
 }
 
 impl Sheet {
@@ -23,6 +26,7 @@ impl Sheet {
             Self::Reasons => "Why the result is so",
             Self::Models => "Physics models",
             Self::Identified => "Identified models",
+            Self::Derivation => QUESTION,
         }
     }
 
@@ -30,6 +34,7 @@ impl Sheet {
     fn place(self) -> (bool, f32) {
         match self {
             Self::Reasons => (true, 380.0),
+            Self::Derivation => (true, 440.0),
             Self::Models | Self::Identified => (false, 272.0),
         }
     }

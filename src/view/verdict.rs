@@ -1,8 +1,8 @@
 //! Whether the corrected model holds, and the one thing to do where it does not.
 
-use gdcm_core::correction::{ConflictKind, Remedy, Unmatched};
+use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy, Unmatched};
 use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_core::response::{LeadFilter, median};
+use gdcm_core::response::median;
 use gdcm_core::study::{ConditionAnalysis, Edit, PhaseCorrection, SignRole, Value, setting};
 use gdcm_core::units::{number, s_to_ms, signed, telling};
 
@@ -101,7 +101,7 @@ impl Verdict {
     fn of_result(state: &State, shown: &ConditionAnalysis) -> Self {
         let reasons = super::remarks_shown(state, shown).len();
         let (steps, note) = steps(state, shown);
-        let caution = caution(state, shown);
+        let caution = caution(shown);
         Self { condition: shown.condition.id(), rows: rows(state, shown), steps, note, caution, reasons }
     }
 
@@ -251,14 +251,10 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
 }
 
 /// The price of the leads: what the filters of the held response that pays most add above the band (M15.6).
-fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
-    let leads = &shown.compensated.as_ref()?.leads;
-    let added_db = |pair: Pair| -> f64 {
-        let filters = gdcm_core::correction::Channel::of(pair).map(|channel| leads.filters()[channel]);
-        filters.into_iter().flatten().map(LeadFilter::gain_at_infinity_db).sum()
-    };
-    let most_db = shown.held().marked().map(added_db).fold(0.0, f64::max);
-    let top = number(state.study.settings.band.max());
+fn caution(shown: &ConditionAnalysis) -> Option<String> {
+    let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
+    let most_db = shown.held().marked().map(|pair| price.of_pair_db(pair)).fold(0.0, f64::max);
+    let top = number(price.limit_rad_s);
     (most_db > 0.05).then(|| format!("Price: {} dB above {top} rad/s", signed(most_db, 0)))
 }
 

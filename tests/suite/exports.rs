@@ -359,3 +359,28 @@ fn octave_computes_the_response_of_a_corrected_model() {
     assert_eq!(found.len(), expected.len());
     assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-9 * b.abs()));
 }
+
+#[test]
+fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
+    let desk = Desk::new();
+    // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
+    let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
+    for About { name: format, extension, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+        let name = if format == "state-space" {
+            "state_space.json"
+        } else {
+            &format!("{}.{extension}", format.replace('-', "_"))
+        };
+        let ended = desk.gdcm(&["export", "--phase", "lead", "--as", format, "--out", name]);
+        assert_eq!((ended.status, ended.error.as_str()), (0, ""), "{format}");
+        assert!(ended.out.contains(limit) && ended.out.contains(" dB on LON"), "{format}: {}", ended.out);
+        let bytes = fs::read(desk.path(name)).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        let is_said = text.contains(limit) || text.contains("not_valid_above_rad_s");
+        assert!(is_said || extension == "mat", "{format}");
+        // What no compiler or old editor shows is spelled by its number: none of it stands in what the program itself says.
+        assert!(!text.contains("<U+2212>"), "{format}");
+    }
+    let without = desk.gdcm(&["export", "--as", "py", "--out", "delays.py"]);
+    assert!(!without.out.contains("leads"), "{}", without.out);
+}

@@ -1,5 +1,6 @@
 //! The table of commands: the palette, the page of keys, tables and the tour.
 
+use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::FormKind;
 use gdcm::view::command_table::command_table;
 use gdcm::view::command_table::every_command;
@@ -8,6 +9,7 @@ use gdcm_core::correction::Channel;
 use gdcm_core::study::Table;
 use gdcm_core::uncertainty::Scalar;
 
+use super::views::give;
 use super::*;
 
 fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
@@ -231,7 +233,7 @@ fn the_first_start_shows_the_tour_once_and_it_can_be_skipped() {
     let setup = || Setup { directory: Some(directory.path().to_owned()), offers_tour: true, ..Setup::default() };
     let mut window = window_with(example(), setup());
     window.get_by_label("Flight conditions");
-    for title in ["The bundle of models", "The curves", "What is held", "The result, to be taken away"] {
+    for title in ["The bundle of models", "The curves", "What is held", "The verdict"] {
         click(&mut window, "Next step");
         window.get_by_label(title);
     }
@@ -242,6 +244,9 @@ fn the_first_start_shows_the_tour_once_and_it_can_be_skipped() {
     assert_eq!(state(&window).tour, None, "not again");
     ask(&mut window, "guided tour");
     window.get_by_label("Flight conditions");
+    give(&mut window, AssemblingCommand::Open);
+    assert!(window.query_by_label("Flight conditions").is_none(), "its notes are about panels that are not there");
+    give(&mut window, AssemblingCommand::Close);
     click(&mut window, "Skip the tour");
     assert_eq!(state(&window).tour, None);
 }

@@ -26,7 +26,9 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     let asked = state(window).display.asked.clone().expect("a figure is explained");
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
     assert!((found.value - expected).abs() <= 1e-12 * expected.abs(), "{}: {} {expected}", found.title, found.value);
-    give(window, Action::Explain(None));
+    window.get_by_label_contains("It rests on");
+    press(window, Modifiers::NONE, Key::Escape);
+    assert_eq!(state(window).display.asked, None, "Escape closes the sheet");
 }
 
 #[test]

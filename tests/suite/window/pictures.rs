@@ -20,10 +20,31 @@ use gdcm_core::study::Edit;
 use super::views::{give, show};
 use super::*;
 
-const WIDTH: usize = 1280;
-const HEIGHT: usize = 720;
-/// Pixels of the window on either side of one of the saved picture: letters stay legible, files small.
-const SCALE: usize = 2;
+/// Size of the window \[pt\], folder of the pictures, and pixels of the window on either side of one of the saved picture: where only
+/// a test looks, letters stay legible and files small.
+#[derive(Clone, Copy)]
+struct Format {
+    size: [usize; 2],
+    folder: &'static str,
+    scale: usize,
+}
+
+/// What tests compare.
+const COMPARED: Format = Format { size: [1280, 720], folder: "tests/data/pictures", scale: 2 };
+/// What the pages show.
+const SHOWN: Format = Format { size: [1600, 900], folder: "assets/screenshots", scale: 1 };
+
+impl Format {
+    /// Size of a picture \[px\].
+    fn pixels(self) -> [usize; 2] {
+        self.size.map(|side| side / self.scale)
+    }
+
+    fn path(self, name: &str) -> PathBuf {
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(self.folder).join(format!("{name}.png"))
+    }
+}
+
 /// Difference of a channel from which a pixel is another: below it lie other roundings of the last digit of a curve.
 const OTHER: u8 = 40;
 /// Part of the pixels that may be others: a digit or two. A line of text or a curve that is missing is more.
@@ -58,8 +79,9 @@ fn colour(of: egui::Color32) -> Color {
     Color::from_rgba_premultiplied(r, g, b, a)
 }
 
-/// The pixels of what the window shows, red, green and blue, averaged over squares of [`SCALE`].
-fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
+/// The pixels of what the window shows, red, green and blue, averaged over squares of the format's scale.
+fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
+    let ([width, height], scale) = (format.size, format.scale);
     let mut renderer = SoftwareRenderer::default();
     let known: HashMap<egui::TextureId, TextureId> = textures
         .0
@@ -71,7 +93,7 @@ fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
         })
         .collect();
     let shapes = window.ctx.tessellate(window.output().shapes.clone(), 1.0);
-    let mut frame = renderer.begin_frame(WIDTH, HEIGHT).expect("the size is allowed");
+    let mut frame = renderer.begin_frame(width, height).expect("the size is allowed");
     let ground = Palette::of(&window.ctx.global_style().visuals).background;
     frame.clear(colour(ground));
     for of in shapes {
@@ -90,34 +112,41 @@ fn picture(window: &Window, textures: &Textures) -> Vec<u8> {
     }
     let pixels = &frame.surface().pixels;
     let average = |x: usize, y: usize, channel: usize| {
-        let square = (0..SCALE * SCALE).map(|at| (x * SCALE + at % SCALE, y * SCALE + at / SCALE));
-        let sum: usize = square.map(|(x, y)| usize::from(pixels[4 * (y * WIDTH + x) + channel])).sum();
-        (sum / (SCALE * SCALE)) as u8
+        let square = (0..scale * scale).map(|at| (x * scale + at % scale, y * scale + at / scale));
+        let sum: usize = square.map(|(x, y)| usize::from(pixels[4 * (y * width + x) + channel])).sum();
+        (sum / (scale * scale)) as u8
     };
-    let places = (0..HEIGHT / SCALE).flat_map(|y| (0..WIDTH / SCALE).map(move |x| (x, y)));
+    let [columns, rows] = format.pixels();
+    let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
     places.flat_map(|(x, y)| [0, 1, 2].map(|channel| average(x, y, channel))).collect()
 }
 
-fn saved(name: &str) -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data/pictures").join(format!("{name}.png"))
-}
-
-fn write(name: &str, pixels: &[u8]) {
-    let path = saved(name);
+fn write(name: &str, pixels: &[u8], format: Format) {
+    let (path, [width, height]) = (format.path(name), format.pixels());
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    let mut encoder = png::Encoder::new(File::create(path).unwrap(), (WIDTH / SCALE) as u32, (HEIGHT / SCALE) as u32);
+    let mut encoder = png::Encoder::new(File::create(path).unwrap(), width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
     encoder.write_header().unwrap().write_image_data(pixels).unwrap();
 }
 
-fn read(name: &str) -> Vec<u8> {
-    let path = saved(name);
+fn read(name: &str, format: Format) -> Vec<u8> {
+    let path = format.path(name);
     let file = File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
     pixels
+}
+
+/// What is to be said of a picture that looks otherwise than the one kept; in a run that makes them anew, it is kept.
+fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Option<String> {
+    let found = picture(window, textures, format);
+    if std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write") {
+        write(name, &found, format);
+    }
+    let part = others(&found, &read(name, format));
+    (part > MOST_OTHERS).then(|| format!("{name}: {:.2} % of the pixels are others", 100.0 * part))
 }
 
 /// Part of the pixels that differ.
@@ -128,11 +157,11 @@ fn others(one: &[u8], other: &[u8]) -> f64 {
     differing as f64 / (one.len() / 3) as f64
 }
 
-fn pictured_window(textures: &Textures) -> Window {
+fn pictured_window(textures: &Textures, format: Format) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
     };
-    let size = vec2(WIDTH as f32, HEIGHT as f32);
+    let size = vec2(format.size[0] as f32, format.size[1] as f32);
     let mut window = Harness::builder().with_size(size).renderer(textures.clone()).build_eframe(build);
     settle(&mut window);
     window
@@ -140,9 +169,8 @@ fn pictured_window(textures: &Textures) -> Window {
 
 #[test]
 fn every_view_looks_as_it_did_in_both_themes() {
-    let writes = std::env::var("GDCM_PICTURES").is_ok_and(|what| what == "write");
     let textures = Textures::default();
-    let mut window = pictured_window(&textures);
+    let mut window = pictured_window(&textures, COMPARED);
     give(&mut window, Action::OpenDock(false));
     give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
     click(&mut window, CONDITION_10);
@@ -165,26 +193,59 @@ fn every_view_looks_as_it_did_in_both_themes() {
             wait_until(&mut window, "rest", |window| !state(window).results.background.is_busy());
             // Tooltips, fades and the bars of a scroll area come to rest.
             window.run_steps(8);
-            let (name, found) =
-                (format!("{}-{theme}", view.name().to_lowercase().replace(' ', "-")), picture(&window, &textures));
-            if writes {
-                write(&name, &found);
-            }
-            let part = others(&found, &read(&name));
-            if part > MOST_OTHERS {
-                misses.push(format!("{name}: {:.2} % of the pixels are others", 100.0 * part));
-            }
+            let name = format!("{}-{theme}", view.name().to_lowercase().replace(' ', "-"));
+            misses.extend(miss(&name, &window, &textures, COMPARED));
         }
     }
     assert!(misses.is_empty(), "{}", misses.join("\n"));
 }
 
 #[test]
+fn the_pictures_of_the_pages_are_those_of_the_window() {
+    let textures = Textures::default();
+    let mut window = pictured_window(&textures, SHOWN);
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    click(&mut window, CONDITION_10);
+    click(&mut window, "Response LON → Q");
+    let mut misses = Vec::new();
+    let mut look = |window: &mut Window, name: &str| {
+        for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
+            give(window, Action::SetTheme(preference));
+            wait_for_background(window);
+            window.run_steps(8);
+            misses.extend(miss(&format!("{name}-{theme}"), window, &textures, SHOWN));
+        }
+    };
+    press(&mut window, Modifiers::COMMAND, Key::R);
+    settle(&mut window);
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    look(&mut window, "outliers");
+    show(&mut window, View::Evidence);
+    look(&mut window, "evidence");
+    show(&mut window, View::Bode);
+    click(&mut window, "Use leads");
+    settle(&mut window);
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    look(&mut window, "leads");
+    show(&mut window, View::Records);
+    wait_until(&mut window, "the records", |window| {
+        state(window).records.conditions.get(&ConditionId(10)).is_some_and(|of| of.rows.len() == 9)
+    });
+    click(&mut window, "Identify");
+    wait_until(&mut window, "the models", |window| {
+        state(window).records.conditions[&ConditionId(10)].identification().is_some()
+    });
+    click(&mut window, "Page Response");
+    look(&mut window, "records");
+    assert!(misses.is_empty(), "{}", misses.join("\n"));
+}
+
+#[test]
 fn a_missing_line_of_text_is_another_picture() {
     let textures = Textures::default();
-    let mut window = pictured_window(&textures);
-    let before = picture(&window, &textures);
-    assert_eq!(others(&before, &picture(&window, &textures)), 0.0, "a picture is the same twice");
+    let mut window = pictured_window(&textures, COMPARED);
+    let before = picture(&window, &textures, COMPARED);
+    assert_eq!(others(&before, &picture(&window, &textures, COMPARED)), 0.0, "a picture is the same twice");
     click(&mut window, CONDITION_10);
-    assert!(others(&before, &picture(&window, &textures)) > MOST_OTHERS);
+    assert!(others(&before, &picture(&window, &textures, COMPARED)) > MOST_OTHERS);
 }

@@ -55,6 +55,11 @@ impl LeadDesign {
         &self.omega
     }
 
+    /// `omega_B` \[rad/s\], the top of the band.
+    pub fn band_top_rad_s(&self) -> f64 {
+        self.omega.last().copied().unwrap_or(1.0)
+    }
+
     /// `b` \[s\].
     pub fn lag_s(&self) -> f64 {
         self.lag_s

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::{Airspeeds, Regression, SecondTerm, SecondVariable, design};
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign};
+use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadPrice};
 use crate::dataset::{ConditionId, FlightState};
 use crate::units::{s_to_ms, signed};
 use crate::whole_number::{whole, whole_or_none};
@@ -309,6 +309,19 @@ impl Schedule {
     /// Whether delays, or delays and leads, are scheduled.
     pub fn has_delays(&self) -> bool {
         self.delays.is_some() || self.leads.is_some()
+    }
+
+    /// What the scheduled leads cost: of each channel the most over the airspeeds. None of a schedule without lead filters.
+    pub fn lead_price(&self) -> Option<LeadPrice> {
+        const STEPS: u32 = 100;
+        let leads = self.leads.as_ref()?;
+        let steps = if leads.degree() == 0 { 0 } else { STEPS };
+        let kt = |step: u32| {
+            let part = f64::from(step) / f64::from(STEPS);
+            self.airspeeds.min_kt + part * (self.airspeeds.max_kt - self.airspeeds.min_kt)
+        };
+        let prices = (0..=steps).filter_map(|step| LeadPrice::of(&leads.at(&self.airspeeds, kt(step))));
+        prices.reduce(|most, other| most.or_more(&other))
     }
 
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.

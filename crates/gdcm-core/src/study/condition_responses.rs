@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
+use crate::correction::ABOVE_BAND;
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::{ABOVE_BAND, Cancelled, Execution, Memo, PhaseCorrection, Settings};
+use super::{Cancelled, Execution, Memo, PhaseCorrection, Settings};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);

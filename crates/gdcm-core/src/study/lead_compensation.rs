@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::correction::{
-    Bounds, Channel, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Problem, Quantity, delta_gains,
+    Bounds, Channel, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, LeadPrice, Problem, Quantity, delta_gains,
 };
 use crate::dataset::{Pair, PairTable};
 use crate::fidelity::{Cost, CostAverage, Mismatch};
@@ -101,8 +101,6 @@ impl LeadOffer {
 const APART_S: f64 = 0.02;
 /// Signed delays below this \[s\] are nothing to correct.
 const NOTHING_S: f64 = 2e-3;
-/// Multiple of the band's top up to which the price of leads is told and drawn.
-pub const ABOVE_BAND: f64 = 10.0;
 
 /// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
 /// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
@@ -110,7 +108,7 @@ pub const ABOVE_BAND: f64 = 10.0;
 pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
     let Some(compensated) = &result.compensated else { return Vec::new() };
     let (inputs, outputs) = study.dataset.names_of_channels();
-    let top = study.settings.band.max();
+    let price = LeadPrice::of(&compensated.leads);
     let half_ms = |pair: Pair| {
         let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
         Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
@@ -124,9 +122,8 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
             let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
             format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
         };
-        let filters = [output, input].into_iter().filter_map(|channel| compensated.leads.filters()[channel]);
-        let gain_db: f64 = filters.map(LeadFilter::gain_at_infinity_db).sum();
-        let price = if gain_db > 0.05 { format!("; {} dB above the band", signed(gain_db, 1)) } else { String::new() };
+        let price = price.as_ref().and_then(|price| price.pair_words(pair)).map(|words| format!("; {words}"));
+        let price = price.unwrap_or_default();
         Some(format!(
             "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
             output.name(&inputs, &outputs),
@@ -140,19 +137,18 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     };
     let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
     let replaced = filters().map(|(channel, filter)| {
-        let at_above = filter.magnitude_db(ABOVE_BAND * top);
-        format!(
-            "{}: {}; {} dB at {} rad/s",
-            channel.name(&inputs, &outputs),
-            servo_words(filter),
-            signed(at_above, 1),
-            number(ABOVE_BAND * top)
-        )
+        let name = channel.name(&inputs, &outputs);
+        let at_above = price.as_ref().map(|price| {
+            format!("; {} dB at {} rad/s", signed(price.gains_db[channel], 1), number(price.above_rad_s()))
+        });
+        format!("{name}: {}{}", servo_words(filter), at_above.unwrap_or_default())
     });
     let states: usize = filters().map(|(_, filter)| filter.order().number()).sum();
-    let price = (states > 0)
-        .then(|| format!("The leads add {states} states. Do not use the corrected model above {} rad/s.", number(top)));
-    result.held().marked().filter_map(wants).chain(replaced).chain(price).collect()
+    let limit = price.as_ref().map(|price| {
+        let top = number(price.limit_rad_s);
+        format!("The leads add {states} states. Do not use the corrected model above {top} rad/s.")
+    });
+    result.held().marked().filter_map(wants).chain(replaced).chain(limit).collect()
 }
 
 /// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".

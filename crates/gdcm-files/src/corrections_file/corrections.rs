@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use gdcm_core::correction::{
-    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, Outcome, Problem, Quantity,
-    Sensitivity, Solution, kkt_residual, sensitivities,
+    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, LeadPrice, Outcome, Problem,
+    Quantity, Sensitivity, Solution, kkt_residual, sensitivities,
 };
 use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
@@ -146,6 +146,7 @@ impl<'a> ChannelNames<'a> {
     /// The signed delay and the lead filter of each channel (M15), where there are any.
     fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
+        let price = LeadPrice::of(leads);
         Some(self.by_channel(|channel| {
             let filter = leads.filters()[channel];
             json!({
@@ -154,6 +155,8 @@ impl<'a> ChannelNames<'a> {
                 "zero_rad_s": filter.map(|filter| filter.zero_rad_s()),
                 "lag_rad_s": filter.map(|filter| filter.lag_rad_s()),
                 "gain_at_infinity_db": filter.map(|filter| filter.gain_at_infinity_db()),
+                "gain_above_band_db": price.as_ref().map(|price| price.gains_db[channel]),
+                "not_valid_above_rad_s": price.as_ref().map(|price| price.limit_rad_s),
             })
         }))
     }

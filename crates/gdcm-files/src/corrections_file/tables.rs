@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::io::{self, Write};
 
-use gdcm_core::correction::{Channel, ChannelCorrection};
+use gdcm_core::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_core::dataset::{Condition, ConditionId, Pair};
 use gdcm_core::response::LeadFilter;
 use gdcm_core::schedule::CostChange;
@@ -38,7 +38,7 @@ type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 /// A column of the table of responses.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
-const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
+const CHANNEL_COLUMNS: [ChannelColumn; 22] = [
     ("condition", |row| row.found.condition.id().to_string()),
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
@@ -59,6 +59,8 @@ const CHANNEL_COLUMNS: [ChannelColumn; 20] = [
     ("delay_high_s", |row| row.found.end(Scalar::ChannelDelay(row.channel), 1)),
     ("u_gain_physics", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.trim)),
     ("u_gain_identification", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)),
+    ("gain_above_band_db", |row| cell(row.price().map(|price| price.gains_db[row.channel]))),
+    ("not_valid_above_rad_s", |row| cell(row.price().map(|price| price.limit_rad_s))),
 ];
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
@@ -176,6 +178,10 @@ impl ChannelRow<'_> {
 
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {
         of?.leads.as_ref().map(|leads| leads.taus_s[self.channel])
+    }
+
+    fn price(&self) -> Option<LeadPrice> {
+        LeadPrice::of(self.found.own()?.leads.as_ref()?)
     }
 
     fn filter(&self) -> Option<LeadFilter> {

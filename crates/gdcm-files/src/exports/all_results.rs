@@ -26,7 +26,8 @@ impl Exporter for Json {
 
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let Export { analysis, source, .. } = *of;
-        Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file)))
+        Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file))
+            .with(of.price()))
     }
 }
 
@@ -37,7 +38,7 @@ impl Exporter for Csv {
 
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let analysis = of.analysis;
-        Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)))
+        Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)).with(of.price()))
     }
 }
 
@@ -49,7 +50,7 @@ impl Exporter for Mat {
     fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
         let value = corrections_struct(corrections, &of.analysis.study.dataset);
-        Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?))
+        Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?).with(of.price()))
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
-use gdcm_core::correction::{ChannelCorrection, CorrectedModel};
+use gdcm_core::correction::{ChannelCorrection, CorrectedModel, LeadPrice};
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
 };
@@ -94,6 +94,8 @@ struct ExportedModel {
     phase_error_deg: f64,
     /// Top of the band of comparison \[rad/s\].
     band_top_rad_s: f64,
+    /// What its lead filters cost, with that in words; none where it has none.
+    price: Option<(LeadPrice, String)>,
 }
 
 /// The corrected models that a request asks for, in the dataset's order.
@@ -123,6 +125,8 @@ fn exported_model(
         let words = error.words(&inputs, &outputs);
         ExportFault::Model { condition: id, model: model.name.clone(), words }
     })?;
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let price = correction.leads.as_ref().and_then(LeadPrice::of);
     let band_top_rad_s = analysis.study.settings.band.max();
     let is_sampled = dynamics.timing().sample_time_s.is_some();
     Ok(ExportedModel {
@@ -141,6 +145,10 @@ fn exported_model(
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
         band_top_rad_s,
+        price: price.map(|price| {
+            let words = price.words(&inputs, &outputs);
+            (price, words)
+        }),
         model: corrected.model,
     })
 }
@@ -208,7 +216,14 @@ impl ExportedModel {
     /// What it is and how exact, in one line.
     fn words(&self) -> String {
         let Self { condition, name, correction, .. } = self;
-        format!("condition {condition}, model {name}, {correction} correction: {}", self.delay_words())
+        let price = self.price.as_ref().map(|(_, words)| format!("; {words}")).unwrap_or_default();
+        format!("condition {condition}, model {name}, {correction} correction: {}{price}", self.delay_words())
+    }
+
+    /// The gain at ten times the band that the leads of the response that pays most add \[dB\]; 0 without leads.
+    fn gain_above_band_db(&self) -> f64 {
+        let most = |gains_db: &[f64]| gains_db.iter().copied().fold(0.0, f64::max);
+        self.price.as_ref().map_or(0.0, |(price, _)| most(&price.gains_db.inputs) + most(&price.gains_db.outputs))
     }
 
     /// How exact its delays are.
@@ -289,13 +304,15 @@ fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
 /// A metric of a model, and its name.
 type Metric = (&'static str, fn(&ExportedModel) -> f64);
 
-const METRICS: [Metric; 6] = [
+const METRICS: [Metric; 8] = [
     ("Ts", sample_time_s),
     ("condition", |model| model.condition.0 as f64),
     ("airspeed_kt", |model| model.airspeed_kt),
     ("pade_order", |model| model.pade_order as f64),
     ("phase_error_deg", |model| model.phase_error_deg),
     ("band_top_rad_s", |model| model.band_top_rad_s),
+    ("not_valid_above_rad_s", |model| model.price.as_ref().map_or(f64::INFINITY, |(price, _)| price.limit_rad_s)),
+    ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
 /// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in

@@ -222,6 +222,11 @@ impl<'e> BreakpointTable<'e> {
             fields.add("lead_order", scalar(leads.design.settings().order.number() as f64));
             fields.add("lead_lag_s", scalar(leads.design.lag_s()));
         }
+        if let Some(price) = schedule.lead_price() {
+            fields.add("not_valid_above_rad_s", scalar(price.limit_rad_s));
+            fields.add("input_gain_above_band_db", row(price.gains_db.inputs.iter().copied()));
+            fields.add("output_gain_above_band_db", row(price.gains_db.outputs.iter().copied()));
+        }
         fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
         Variable { name: "gdcm_table".to_owned(), value: fields.record() }
     }

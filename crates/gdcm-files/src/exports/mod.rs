@@ -163,6 +163,13 @@ pub struct Export<'e> {
 }
 
 impl<'e> Export<'e> {
+    /// What the leads of the schedule cost, in words, for a file that holds them as numbers.
+    fn price(&self) -> Vec<String> {
+        let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
+        let price = self.analysis.schedule.as_ref().ok().and_then(|schedule| schedule.lead_price());
+        price.into_iter().map(|price| price.words(&inputs, &outputs)).collect()
+    }
+
     /// The schedule of the study.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
         let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;

@@ -117,7 +117,11 @@ impl Program {
             }
         });
         let lead = of.schedule.leads.as_ref().map(|leads| {
-            context! { order => leads.design.settings().order.number(), lag_s => number(leads.design.lag_s()) }
+            context! {
+                order => leads.design.settings().order.number(),
+                lag_s => number(leads.design.lag_s()),
+                limit_rad_s => number(leads.design.band_top_rad_s()),
+            }
         });
         let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
         let (inputs, outputs) = all_channels(of.dataset).into_iter().partition::<Vec<_>, _>(is_input);
@@ -256,8 +260,8 @@ fn check_function_name(name: &str) -> Result<(), ExportFault> {
     Err(ExportFault::FunctionName { found: name.to_owned() })
 }
 
-/// A text for a comment of any language: visible characters of ASCII, all others by their numbers in Unicode, and nothing that
-/// ends or begins a comment.
+/// A text for a comment of any language: visible characters of ASCII, the signs of the program's own words by what stands for them
+/// there, all others by their numbers in Unicode, and nothing that ends or begins a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
@@ -270,6 +274,13 @@ pub(super) fn comment(text: &str) -> String {
                 plain.push(character);
             }
             ' '..='~' => plain.push(character),
+            '\u{2212}' | '\u{2013}' => plain.push('-'),
+            '±' => plain.push_str("+-"),
+            '≈' => plain.push('~'),
+            '²' => plain.push_str("^2"),
+            '°' => plain.push_str("deg"),
+            'α' => plain.push_str("alpha"),
+            'τ' => plain.push_str("tau"),
             _ => plain.push_str(&format!("<U+{:04X}>", u32::from(character))),
         }
     }

@@ -97,6 +97,8 @@ impl Scheduled<'_> {
         let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
         let (inputs, outputs) = self.dataset.names_of_channels();
         let cautions = self.schedule.cautions.iter().map(|caution| caution.words(&inputs, &outputs));
+        let price = self.schedule.lead_price().map(|price| price.words(&inputs, &outputs));
+        let cautions = price.into_iter().chain(cautions);
         (!self.schedule.has_delays()).then_some(unscheduled).into_iter().chain(cautions).collect()
     }
 

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 
 use super::programs::{PROGRAMS, comment};
 use super::scheduled::{Scheduled, number};
-use super::{ExportFault, ExportSource, Exporter};
+use super::{EXPORTERS, Export, ExportFault, ExportRequest, ExportSource, Exporter};
 use crate::embedded_example;
 
 /// The example under every form of the schedule: kind, quantity, delays.
@@ -114,6 +114,33 @@ fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
         let has_delays = settings.schedule.delays || settings.phase == PhaseCorrection::Lead;
         let text = program("py", &analysis, "");
         assert_eq!(text.contains("# Note: delays are not scheduled in this study"), !has_delays, "{words}");
+    }
+}
+
+#[test]
+fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
+    for (words, analysis) in analyses() {
+        let price = analysis.schedule.as_ref().unwrap().lead_price();
+        assert_eq!(price.is_some(), analysis.study.settings.phase == PhaseCorrection::Lead, "{words}");
+        for (language, limit) in
+            [("m", ""), ("py", "NOT_VALID_ABOVE_RAD_S = 1.2"), ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2")]
+        {
+            let text = program(language, &analysis, "k");
+            let (says, has_number) =
+                (text.contains("Note: not valid above 12 rad/s: at 120 rad/s"), text.contains(limit));
+            assert!(text.is_ascii() && says == price.is_some(), "{words}: {text}");
+            assert!(limit.is_empty() || has_number == price.is_some(), "{words}: {text}");
+        }
+        let source = ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() };
+        for exporter in EXPORTERS.iter() {
+            let about = exporter.about();
+            let path = Path::new("k").with_extension(about.extension);
+            let request = ExportRequest::default();
+            let export = Export { analysis: &analysis, source: &source, request: &request, path: &path };
+            let Ok(exported) = exporter.export(&export) else { continue };
+            let says = exported.remarks.iter().any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
+            assert_eq!(says, price.is_some(), "{words}, {}: {:?}", about.name, exported.remarks);
+        }
     }
 }
 
@@ -301,6 +328,7 @@ fn a_name_that_matlab_cannot_call_is_refused() {
 fn a_comment_stays_one_line_and_is_not_ended() {
     assert_eq!(comment("a\n*/b"), "a<U+000A>* /b");
     assert_eq!(comment("δ\\"), "<U+03B4>\\.");
+    assert_eq!(comment("−3 ± 2 dB"), "-3 +- 2 dB");
 }
 
 proptest! {

@@ -77,7 +77,9 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
         ("Airspeeds", format!("{low} to {high} kt; outside, the end value holds")),
         ("Conditions left out of it", if left_out.is_empty() { "none".to_owned() } else { names(&left_out) }),
     ]);
-    page.list(schedule.cautions.iter().map(|of| format!("Caution: {}.", of.words(&inputs, &outputs))));
+    let price = schedule.lead_price().map(|price| format!("Leads: {}.", price.words(&inputs, &outputs)));
+    let cautions = schedule.cautions.iter().map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
+    page.list(price.into_iter().chain(cautions));
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);
     let measures =

@@ -130,3 +130,24 @@ fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not
     }
     assert_eq!(titles, [format!("untitled study • – {dataset} – gdcm")], "told once");
 }
+
+#[test]
+#[ignore = "takes a minute: the labels of 264 responses"]
+fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condition() {
+    let mut window = window();
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    let conditions: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
+    let pairs: Vec<Pair> = state(&window).study.settings.constrained.pairs().collect();
+    assert_eq!((conditions.len(), pairs.len()), (11, 24));
+    // Between the panels, which are 272 and 352 points wide, below the bar of the views.
+    let size = window.ctx.content_rect();
+    let centre = egui::Rect::from_min_max(pos2(272.0, 80.0), pos2(size.right() - 352.0, size.bottom() - 26.0));
+    for condition in conditions {
+        give(&mut window, Action::SelectCondition(condition));
+        for pair in &pairs {
+            give(&mut window, Action::FocusPair(*pair));
+            window.run_steps(2);
+            assert_apart(&window, centre, &format!("condition {condition}, {}", state(&window).dataset().pair_name(*pair)));
+        }
+    }
+}

@@ -35,6 +35,7 @@ mod figure;
 mod gains;
 mod label_places;
 mod layout;
+mod leads;
 mod mark;
 mod paint;
 mod poles;
@@ -56,6 +57,7 @@ pub use figure::*;
 pub use gains::*;
 pub use label_places::*;
 pub use layout::*;
+pub use leads::*;
 pub use mark::*;
 pub use paint::*;
 pub use poles::*;
@@ -83,13 +85,15 @@ pub enum FigureKind {
     Assessment,
     /// Poles of every model of one condition.
     Poles,
+    /// What delay or lead does in each channel of one condition, to ten times the band.
+    Leads,
     /// One response in every condition, coloured by airspeed.
     Airspeeds,
 }
 
 impl FigureKind {
     /// Every kind.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -98,6 +102,7 @@ impl FigureKind {
         Self::Evidence,
         Self::Assessment,
         Self::Poles,
+        Self::Leads,
         Self::Airspeeds,
     ];
 
@@ -112,6 +117,7 @@ impl FigureKind {
             Self::Evidence => "evidence",
             Self::Assessment => "assessment",
             Self::Poles => "poles",
+            Self::Leads => "leads",
             Self::Airspeeds => "airspeeds",
         }
     }
@@ -123,7 +129,7 @@ impl FigureKind {
 
     /// Whether it is a figure of one condition.
     pub fn is_of_condition(self) -> bool {
-        matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles)
+        matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads)
     }
 }
 
@@ -181,6 +187,7 @@ impl FigureRequest {
                     None => Vec::new(),
                 })
             }
+            FigureKind::Leads => leads_figure(condition?, &self.pairs),
             FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
         })
     }

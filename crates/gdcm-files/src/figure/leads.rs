@@ -1,0 +1,128 @@
+//! What delay or lead does in each channel of one condition, to ten times the band: where the model ends to be valid, and what that costs.
+
+use gdcm_core::correction::{ABOVE_BAND, Channel, ChannelCorrection, LeadPrice};
+use gdcm_core::dataset::Pair;
+use gdcm_core::response::GainDelay;
+
+use super::axis::{Axis, Range};
+use super::condition_source::ConditionSource;
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::gains::all_channels;
+use super::mark::{Along, Band, Curve, Rule};
+use super::role::Role;
+
+/// Points of a curve.
+const POINTS: usize = 240;
+const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.8);
+const OF_OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long);
+const OF_INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
+const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
+
+/// Gain and phase of what gives each channel delay or lead, without the gains k, from the band to ten times its top; the channels of
+/// `pairs` and what both add to the response stand out. One row of two plots for each response.
+pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
+    let title = format!("Leads · {}", source.condition_words());
+    let caption = format!(
+        "{} What delay or lead adds to each channel, without the gains k; thin: the other channels.",
+        source.caption()
+    );
+    let figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);
+    let Some(analysis) = source.analysis else { return figure };
+    let rows = pairs.iter().flat_map(|&pair| plots(source, &analysis.correction, pair));
+    figure.plots(rows)
+}
+
+/// Gain and phase of one response's channels, those of the other channels behind them.
+fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> [Plot; 2] {
+    let (dataset, band) = (source.dataset(), source.study.settings.band);
+    let (inputs, outputs) = dataset.names_of_channels();
+    let omega = frequencies(band.min(), ABOVE_BAND * band.max());
+    let [output, input] = Channel::of(pair);
+    let of = |channels: &[Channel]| {
+        let lead = |at: usize| channels.get(at).and_then(|channel| correction.lead(*channel));
+        let delay_s: f64 = channels.iter().map(|channel| correction.pure_delay_s(*channel)).sum();
+        GainDelay::new(1.0, delay_s).led([lead(0), lead(1)])
+    };
+    let others = all_channels(dataset).into_iter().filter(|channel| ![output, input].contains(channel));
+    let others = others.map(|channel| (channel.name(&inputs, &outputs), "other channels".to_owned(), OTHERS, vec![channel]));
+    let focus = [(input, OF_INPUT), (output, OF_OUTPUT)].map(|(channel, stroke)| {
+        let name = channel.name(&inputs, &outputs);
+        (name.clone(), name, stroke, vec![channel])
+    });
+    let name = dataset.pair_name(pair);
+    let both = (name.clone(), format!("{name}, both"), Role::Corrected.stroke(false), vec![output, input]);
+    let drawn: Vec<_> = others
+        .chain(focus)
+        .chain([both])
+        .map(|(name, key, stroke, channels)| (name, key, stroke, of(&channels)))
+        .collect();
+    let price = correction.leads.as_ref().and_then(LeadPrice::of);
+    let zeros = vec![0.0; omega.len()];
+    let panel = |y: Axis, values: &dyn Fn(GainDelay) -> Vec<f64>| {
+        let curves = drawn.iter().map(|(name, key, stroke, dynamics)| {
+            Curve::new(name, *stroke, omega.clone(), values(*dynamics)).key(key)
+        });
+        let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y).with_all(curves);
+        price.iter().fold(panel, |panel, price| beyond(panel, price))
+    };
+    let gain = panel(Axis::linear("Gain [dB]").including(0.0).at_least(3.0), &|dynamics| {
+        dynamics.magnitudes_db(&zeros, &omega).collect()
+    });
+    let phase = panel(Axis::degrees("Phase [deg]").including(0.0).at_least(10.0), &|dynamics| {
+        dynamics.phases(&zeros, &omega).map(f64::to_degrees).collect()
+    });
+    let price = price.as_ref().and_then(|price| price.pair_words(pair));
+    let price = price.map(|words| format!(": {words}")).unwrap_or_default();
+    [Plot::new(format!("{name}, gain of the leads{price}")).panel(gain), Plot::new(format!("{name}, phase")).panel(phase)]
+}
+
+/// The ground of what lies beyond the band, and the line where it begins, which says so.
+fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
+    let range = Range::new(price.limit_rad_s, price.above_rad_s());
+    let ground = Band { along: Along::X, range, color: Color::of(Hue::Warning).tint(14), key: Some(price.limit_words()) };
+    panel.over(ground).with(Rule::vertical(price.limit_rad_s, LIMIT).label(price.limit_words()))
+}
+
+/// So many frequencies \[rad/s\] between two, equally far apart by their logarithms, with both.
+fn frequencies(min: f64, max: f64) -> Vec<f64> {
+    let part = |point: usize| point as f64 / (POINTS - 1) as f64;
+    (0..POINTS).map(|point| min * (max / min).powf(part(point))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use gdcm_core::dataset::ConditionId;
+    use gdcm_core::study::{Engine, PhaseCorrection, Study, Unobserved, setting};
+
+    use super::super::mark::Mark;
+    use super::*;
+    use crate::embedded_example;
+
+    #[test]
+    fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {
+        let mut study = Study::new(embedded_example().expect("it is in the program").dataset);
+        study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).expect("the example takes it");
+        let (mut engine, id) = (Engine::default(), ConditionId(10));
+        let analysis = engine.analyze(&study, &Unobserved).expect("nothing stops it");
+        let grid = (study.settings.band, 20);
+        let curves = engine.curves(&study.dataset, id, grid, &Unobserved).expect("nothing stops it").expect("curves");
+        let shown = analysis.condition(id);
+        let source = ConditionSource { study: &study, analysis: shown, schedule: None, curves: &curves };
+        let pair = study.dataset.find_pair("P", "LAT").expect("the example has it");
+        let figure = leads_figure(&source, &[pair]);
+        assert!(figure.plots[0].title.ends_with(" dB at 120 rad/s"), "{}", figure.plots[0].title);
+        let panel = &figure.plots[0].panels[0];
+        let is_limit = |mark: &Mark| matches!(mark, Mark::Rule(rule) if rule.label == "not valid above 12 rad/s" && rule.at == 12.0);
+        assert!(panel.marks.iter().any(is_limit));
+        let of_both = panel.marks.iter().find_map(|mark| match mark {
+            Mark::Curve(curve) if curve.name == study.dataset.pair_name(pair) => curve.points().last(),
+            _ => None,
+        });
+        let [omega, gain_db] = of_both.expect("the curve of both channels");
+        let leads = shown.and_then(|shown| shown.correction.leads.as_ref()).expect("leads");
+        let price_db = LeadPrice::of(leads).expect("a price").of_pair_db(pair);
+        // Roundings of a power, and of a sum of decibels.
+        assert!((omega - 120.0).abs() < 1e-9 && (gain_db - price_db).abs() < 1e-9, "{omega} {gain_db} {price_db}");
+    }
+}

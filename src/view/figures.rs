@@ -25,7 +25,7 @@ pub fn figure_name(state: &State, view: View) -> String {
     if kind.is_some_and(FigureKind::is_of_condition) {
         parts.push(state.condition().id().to_string());
     }
-    if matches!(view, View::Bode | View::Error | View::Across) {
+    if matches!(view, View::Bode | View::Error | View::Across | View::Leads) {
         let (output, input) = state.dataset().channel_names(state.display.pair);
         parts.extend([input, output]);
     }
@@ -43,7 +43,7 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.kind().figure?;
     let (display, dataset) = (&state.display, state.dataset());
     let pairs = match view {
-        View::Bode | View::Error | View::Across => vec![display.pair],
+        View::Bode | View::Error | View::Across | View::Leads => vec![display.pair],
         View::NetGain => net_gain_pairs(state),
         View::Assessment => assessed_pairs(state),
         View::Evidence => dataset.measuring_pairs().marked().collect(),

@@ -198,9 +198,8 @@ impl BodeView {
     pub(super) fn zoom(&mut self, pane: Pane, pointer: Pos2, frequency_factor: f64, value_factor: f64) {
         let Some(transform) = self.transform(pane) else { return };
         let fixed = transform.value_from_position(pointer);
-        self.log_omega.choose(self.log_omega.range().zoomed(frequency_factor, fixed.x));
-        let values = self.value_range(pane).zoomed(value_factor, fixed.y);
-        self.values[pane as usize].choose(values);
+        self.log_omega.zoom(frequency_factor, fixed.x);
+        self.values[pane as usize].zoom(value_factor, fixed.y);
     }
 
     /// What is in view of an axis.
@@ -254,13 +253,15 @@ impl BodeView {
 
     /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
+        let ends = scene.omega_range.map(|(min, max)| Range::new(min.log10(), max.log10()));
+        ends.into_iter().for_each(|ends| self.log_omega.reach(ends));
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
         }
-        let ends = scene.omega_range.map(|(min, max)| Range::new(min.log10(), max.log10()));
         let Some(log_omega) = ends.or_else(|| log_omega_of(scene.curves)) else {
             return;
         };
+        self.log_omega.reach(log_omega);
         if std::mem::take(&mut self.must_fit_frequencies) {
             self.log_omega.fit(log_omega);
         }

@@ -8,7 +8,9 @@ use egui::{
 };
 use egui_plot::{Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform};
 use gdcm_core::study::ExplainTarget;
-use gdcm_files::figure::{Along, Area, Dots, Figure, Mark, MarkId, Panel, Plot, Range, Shape, dot_shapes};
+use gdcm_files::figure::{
+    Along, Area, Dots, Figure, FrequencyUnit, Mark, MarkId, Panel, Plot, Range, Scale, Shape, dot_shapes,
+};
 
 use super::axes::{
     LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,
@@ -37,8 +39,10 @@ const PICK_RADIUS: f32 = 10.0;
 const RING: f32 = 8.0;
 /// How much larger a dot is while something points at what it is of.
 const EMPHASIZED: f64 = 1.3;
-/// Widths of an axis that can be in view.
-const WIDTHS: Range = Range { min: 1e-4, max: 1e5 };
+/// How many times what a panel shows by itself can be in view.
+const FARTHEST: f64 = 10.0;
+/// The least width of an axis that can be in view.
+const LEAST_WIDTH: f64 = 1e-4;
 
 /// What the plots of a figure say about what they show.
 pub trait FigureWords {
@@ -240,7 +244,7 @@ fn plot_ui(
     if scene.is_compact && has_values {
         plot_rect.min.x -= VALUE_AXIS_WIDTH;
     }
-    let [x, y] = kept.ranges.unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
+    let [x, y] = kept.ranges.unwrap_or_else(|| [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)]);
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
         frame(ui, (id, plot_rect.size()), panel, (scene, has_values), palette).show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
@@ -270,7 +274,7 @@ fn plot_ui(
         }
     }
     if scene.zooms {
-        kept.navigate(&response, pointed.is_some());
+        kept.navigate(&response, pointed.is_some(), [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)]);
     }
     (response, pointed)
 }
@@ -325,6 +329,7 @@ impl PlotView {
         let frame = *transform.frame();
         let (min, max) = (transform.bounds().min(), transform.bounds().max());
         let (area, ranges) = (area(frame), [0, 1].map(|axis| Range::new(min[axis], max[axis])));
+        let ranges = [values(panel, ranges[0]), ranges[1]];
         let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| (of, at, shown) == (panel, &area, &ranges);
         if !self.drawn_for.as_ref().is_some_and(is_same) {
             (self.shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
@@ -366,7 +371,7 @@ impl PlotView {
     }
 
     /// The wheel zooms about the pointer, dragging pans, a double click beside the dots shows all.
-    fn navigate(&mut self, response: &Response, is_pointed: bool) {
+    fn navigate(&mut self, response: &Response, is_pointed: bool, whole: [Range; 2]) {
         let Some(transform) = self.transform else { return };
         let (min, max) = (transform.bounds().min(), transform.bounds().max());
         let mut shown = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
@@ -375,13 +380,30 @@ impl PlotView {
             shown = [shown[0].zoomed(factor, fixed.x), shown[1].zoomed(factor, fixed.y)];
             response.ctx.request_repaint();
         }
-        if let [Some(x), Some(y)] = shown.map(|range| range.limited(WIDTHS)) {
+        let limited = |axis: usize| shown[axis].limited(Range::new(LEAST_WIDTH, FARTHEST * whole[axis].width()));
+        if let [Some(x), Some(y)] = [limited(0), limited(1)] {
             self.ranges = Some([x, y]);
         }
         if response.double_clicked() && !is_pointed {
             self.ranges = None;
             response.ctx.request_repaint();
         }
+    }
+}
+
+/// Places along the horizontal axis of the screen, which has logarithms where that of the panel is logarithmic.
+fn places(panel: &Panel, range: Range) -> Range {
+    match panel.x.scale {
+        Scale::Logarithmic => Range::new(range.min.log10(), range.max.log10()),
+        Scale::Linear | Scale::Degrees => range,
+    }
+}
+
+/// The values at these places.
+fn values(panel: &Panel, places: Range) -> Range {
+    match panel.x.scale {
+        Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),
+        Scale::Linear | Scale::Degrees => places,
     }
 }
 
@@ -398,12 +420,16 @@ fn frame<'a>(
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
     let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
     let count = names.len();
+    let along = match panel.x.scale {
+        Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
+        Scale::Linear | Scale::Degrees => values,
+    };
     let spacer = move |input: GridInput| match is_named {
         true => named_marks(&input, count, widest),
-        false => values.marks(input.bounds, input.base_step_size),
+        false => along.marks(input.bounds, input.base_step_size),
     };
     let (words, height) = if scene.is_compact { ("", TICKS_HEIGHT) } else { (panel.x.label.as_str(), LABELLED_HEIGHT) };
-    let across = axis_hints(Side::X, words, height, palette, values);
+    let across = axis_hints(Side::X, words, height, palette, along);
     let across = match is_named {
         true => across.formatter(move |mark, _: &RangeInclusive<f64>| {
             names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default()

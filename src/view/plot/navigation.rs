@@ -48,8 +48,12 @@ pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     digits.iter().position(pressed).map(|place| place + 1)
 }
 
-/// Scrolled points that make a factor of e: about four clicks of a wheel.
-const POINTS_PER_E: f32 = 200.0;
+/// How much closer one notch of a wheel looks.
+const NOTCH: f32 = 1.1;
+/// Points that a notch scrolls by.
+const NOTCH_PT: f32 = 40.0;
+/// How far beyond what is computed the wheel looks, in decades of frequency.
+const BEYOND: f64 = 1.0;
 
 /// How much closer to look, in x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,8 +79,9 @@ pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)>
     if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
         return None;
     }
-    let both = (scrolled.y / POINTS_PER_E).exp() * pinched;
-    Some((Turn { both, sideways: (scrolled.x / POINTS_PER_E).exp() }, pointer))
+    // Two fingers scroll by parts of a notch.
+    let closer = |points: f32| NOTCH.powf(points / NOTCH_PT);
+    Some((Turn { both: closer(scrolled.y) * pinched, sideways: closer(scrolled.x) }, pointer))
 }
 
 /// The part of an axis in view. What the engineer chose stays until a fit of everything is asked for.
@@ -94,6 +99,19 @@ impl ViewedRange {
     /// Shows `range` until something is fitted, later always a part of `ends` with a width in `widths`.
     pub(super) fn new(range: Range, widths: Range, ends: Range) -> Self {
         Self { range, is_chosen: false, widths, ends }
+    }
+
+    /// From now on no farther than a decade beyond what is computed, which is `computed` in decades.
+    pub(super) fn reach(&mut self, computed: Range) {
+        self.ends = Range::new(computed.min - BEYOND, computed.max + BEYOND);
+    }
+
+    /// Looks `factor` times closer, with `fixed` staying where it is, no farther than allowed.
+    pub(super) fn zoom(&mut self, factor: f64, fixed: f64) {
+        let Range { min, max } = self.range.zoomed(factor, fixed);
+        if min < self.ends.max && max > self.ends.min {
+            self.choose(Range::new(min.max(self.ends.min), max.min(self.ends.max)));
+        }
     }
 
     /// What is in view.
@@ -151,6 +169,16 @@ mod tests {
         viewed.release();
         viewed.fit(Range::new(2.0, 3.0));
         assert_eq!(viewed.range(), Range::new(2.0, 3.0));
+    }
+
+    #[test]
+    fn zooming_out_ends_a_decade_beyond_what_is_computed() {
+        let mut viewed = viewed();
+        viewed.reach(Range::new(-0.5, 1.25));
+        (0..100).for_each(|_| viewed.zoom(1.0 / 1.1, 0.3));
+        assert_eq!(viewed.range(), Range::new(-1.5, 2.25));
+        viewed.zoom(1.1, 0.3);
+        assert!(viewed.range().width() < 3.75, "and back");
     }
 
     #[test]

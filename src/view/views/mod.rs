@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, SimulationJob, VariantJob};
+use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, PhaseCorrection, SimulationJob, VariantJob};
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
 
@@ -18,6 +18,7 @@ mod compare;
 mod error;
 mod evidence;
 mod frequency;
+mod leads;
 mod net_gain;
 mod overview;
 mod poles;
@@ -30,6 +31,7 @@ pub use compare::*;
 pub use error::*;
 pub use evidence::*;
 pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
+pub use leads::*;
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;
@@ -57,13 +59,15 @@ pub enum View {
     Compare,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
+    /// What delay or lead does in each channel, to ten times the band, and its price.
+    Leads,
     /// Flight records of the condition, and models identified from them.
     Records,
 }
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -72,14 +76,16 @@ impl View {
         Self::Records,
         Self::NetGain,
         Self::Channels,
+        Self::Leads,
         Self::Evidence,
         Self::Assessment,
         Self::Compare,
     ];
 
-    /// Those that the dock may show.
-    pub fn docked(_state: &State) -> impl Iterator<Item = Self> {
-        Self::ALL.into_iter().filter(|view| view.kind().is_docked)
+    /// Those that the dock may show: that of leads where these are asked for.
+    pub fn docked(state: &State) -> impl Iterator<Item = Self> {
+        let has_leads = state.study.settings.phase == PhaseCorrection::Lead;
+        Self::ALL.into_iter().filter(move |view| view.kind().is_docked && (*view != Self::Leads || has_leads))
     }
 
     /// What its tab says.
@@ -198,6 +204,13 @@ impl View {
                     "Variants: decisions kept under names, beside the present ones",
                     compare_view_ui,
                 )
+            },
+            Self::Leads => ViewKind {
+                group: ViewGroup::Schedule,
+                is_docked: true,
+                title: ViewTitle::Response,
+                figure: Some(FigureKind::Leads),
+                ..ViewKind::new("Leads", "What leads do in each channel, and their price above the band", leads_view_ui)
             },
             Self::NetGain => ViewKind {
                 group: ViewGroup::Schedule,

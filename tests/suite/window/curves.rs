@@ -93,12 +93,12 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     window.hover_at(place);
     window.event(Event::MouseWheel {
         unit: egui::MouseWheelUnit::Line,
-        delta: vec2(0.0, 3.0),
+        delta: vec2(0.0, 8.0),
         phase: egui::TouchPhase::Move,
         modifiers: Modifiers::NONE,
         source: egui::MouseWheelSource::Wheel,
     });
-    window.run_steps(12);
+    window.run_steps(24);
     let zoomed = state(&window).display.error.omega_range();
     assert!(zoomed.0 > 0.5 && zoomed.1 < 12.0, "{zoomed:?}");
     click(&mut window, "Bode");

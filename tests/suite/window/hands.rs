@@ -27,7 +27,8 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
     assert!((found.value - expected).abs() <= 1e-12 * expected.abs(), "{}: {} {expected}", found.title, found.value);
     window.get_by_label_contains("It rests on");
-    press(window, Modifiers::NONE, Key::Escape);
+    window.key_press(Key::Escape);
+    window.run_steps(3);
     assert_eq!(state(window).display.asked, None, "Escape closes the sheet");
 }
 

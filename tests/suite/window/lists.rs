@@ -147,7 +147,11 @@ fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condit
         for pair in &pairs {
             give(&mut window, Action::FocusPair(*pair));
             window.run_steps(2);
-            assert_apart(&window, centre, &format!("condition {condition}, {}", state(&window).dataset().pair_name(*pair)));
+            assert_apart(
+                &window,
+                centre,
+                &format!("condition {condition}, {}", state(&window).dataset().pair_name(*pair)),
+            );
         }
     }
 }

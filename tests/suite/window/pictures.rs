@@ -216,7 +216,7 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
             misses.extend(miss(&format!("{name}-{theme}"), window, &textures, SHOWN));
         }
     };
-    press(&mut window, Modifiers::COMMAND, Key::R);
+    window.key_press_modifiers(Modifiers::COMMAND, Key::R);
     settle(&mut window);
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     look(&mut window, "outliers");

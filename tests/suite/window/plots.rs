@@ -215,7 +215,7 @@ fn what_is_out_of_sight_is_not_tessellated() {
     let view = &state(&window).display.bode;
     let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
     window.hover_at(place);
-    for _ in 0..20 {
+    for _ in 0..50 {
         window.event(egui::Event::MouseWheel {
             unit: egui::MouseWheelUnit::Line,
             delta: vec2(0.0, 1.0),

@@ -182,8 +182,10 @@ mod tests {
             let design = design(if second { LeadOrder::Second } else { LeadOrder::First }, pole);
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
-            // Rounding of a sum of 200 phases, whose errors may all have one sign: 200 times 2.2e-16, and the same of what divides it.
-            prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < 1e-13, "{tau_s}");
+            // Rounding of a sum of 200 phases, whose errors may all have one sign: 200 times 2.2e-16, and the same of what divides it. Of a
+            // lead far below the lag b of its filter the difference a - b has lost digits: 2.2e-16 b, against a lead of share times b or so.
+            let tolerance = 1e-13 + 1e-15 / share;
+            prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }
     }
 }

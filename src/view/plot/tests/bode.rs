@@ -180,6 +180,34 @@ fn the_wheel_zooms_about_the_pointer() {
 }
 
 #[test]
+fn one_notch_of_the_wheel_zooms_by_a_tenth_and_none_goes_far_beyond_what_is_computed() {
+    let mut harness = harness(three_curves());
+    harness.hover_at(point_on(&harness, 1, 60));
+    harness.step();
+    let decades = |harness: &Harness<'_, Model>| {
+        let (min, max) = harness.state().view.omega_range();
+        (max / min).log10()
+    };
+    let before = decades(&harness);
+    let notch = |lines: f32| Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, lines),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Wheel,
+    };
+    harness.event(notch(1.0));
+    harness.run_steps(30);
+    // The smoothing of the toolkit adds up in single precision.
+    assert!((before / decades(&harness) - 1.1).abs() < 1e-3, "{before} {}", decades(&harness));
+    for _ in 0..40 {
+        harness.event(notch(-5.0));
+        harness.run_steps(10);
+    }
+    assert!(decades(&harness) <= before + 2.0 + 1e-6, "{before} {}", decades(&harness));
+}
+
+#[test]
 fn new_data_keep_the_zoom_and_a_double_click_fits_them() {
     let mut harness = harness(three_curves());
     let fitted = harness.state().view.omega_range();

@@ -156,7 +156,7 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
     let at = harness.state().view.position(0, [90.0, 1.15]).unwrap();
     harness.hover_at(at);
     harness.step();
-    harness.event(super::bode::wheel(vec2(0.0, 200.0)));
+    harness.event(super::bode::wheel(vec2(0.0, 400.0)));
     harness.run_steps(30);
     let zoomed = ranges(&harness);
     assert!(zoomed[0].width() < 0.6 * whole[0].width() && zoomed[1].width() < 0.6 * whole[1].width(), "{zoomed:?}");

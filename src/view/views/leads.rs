@@ -1,0 +1,112 @@
+//! What delay or lead does in each channel of the condition, and what leads cost above the band.
+
+use egui::{Panel, RichText, Ui, vec2};
+use gdcm_core::correction::{Channel, LeadPrice};
+use gdcm_core::study::{PhaseCorrection, Table};
+use gdcm_core::units::{number, s_to_ms, signed, telling};
+use gdcm_files::figure::{Figure, FigureKind, FigureRequest, MarkId, all_channels};
+
+use super::View;
+use super::frequency::condition_source;
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::{FigureScene, FigureWords, figure_ui};
+use crate::view::state::State;
+use crate::view::table_view::{Sorting, TableLook, table_ui};
+
+/// Part of the width that the table takes.
+const TABLE_PART: f32 = 0.5;
+
+/// Gain and phase of the leads to ten times the band, and the table of the channels.
+pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    if let Some(table) = leads_table(state) {
+        let width = ui.available_width();
+        let panel = Panel::right("leads").resizable(true).default_size(TABLE_PART * width).min_size(160.0);
+        panel.show(ui, |ui| {
+            let pair = Channel::of(state.display.pair);
+            let channels = all_channels(state.dataset());
+            let selected = |row: usize| channels.get(row).is_some_and(|channel| pair.contains(channel));
+            let look = TableLook { color: &|_, _| None, selected: &selected };
+            let words = RichText::new(&table.title).size(SMALL_SIZE).color(palette.warning);
+            ui.label(words);
+            ui.spacing_mut().interact_size.y = 16.0;
+            table_ui(ui, &table, &mut Sorting::default(), &look, palette, commands);
+        });
+    }
+    let figure = figure(state);
+    let message = match state.study.settings.phase {
+        PhaseCorrection::Lead => state.results.absence(),
+        _ => "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\"",
+    };
+    let mut view = state.display.figures.remove(&View::Leads).unwrap_or_default();
+    let scene = FigureScene {
+        name: "leads",
+        figure: &figure,
+        selected: None,
+        highlighted: None,
+        columns: &[],
+        zooms: false,
+        is_compact: false,
+        accented: None,
+        least: vec2(180.0, 110.0),
+        message,
+        words: (&LeadsWords(&figure), 0),
+    };
+    figure_ui(ui, &scene, &mut view, palette);
+    state.display.figures.insert(View::Leads, view);
+}
+
+/// The figure of the response in focus; without plots where there are no leads.
+fn figure(state: &State) -> Figure {
+    let has_leads = state.shown().is_some_and(|shown| shown.correction.leads.is_some());
+    let source = condition_source(state).filter(|_| has_leads);
+    let pairs = vec![state.display.pair];
+    FigureRequest::new(FigureKind::Leads, pairs, Vec::new()).figure(None, source.as_ref()).unwrap_or_default()
+}
+
+/// Every channel: delay or lead, the lag at the band's end that its lead takes out, which servo it replaces, and its price; in its title
+/// where the corrected model ends to be valid. None without leads.
+pub fn leads_table(state: &State) -> Option<Table> {
+    let leads = state.shown()?.correction.leads.as_ref()?;
+    let price = LeadPrice::of(leads);
+    let (inputs, outputs) = state.dataset().names_of_channels();
+    let top = leads.design.band_top_rad_s();
+    let title = price.as_ref().map_or_else(|| "No channel has a lead filter".to_owned(), LeadPrice::limit_words);
+    let above = price.as_ref().map_or(top, LeadPrice::above_rad_s);
+    let columns = [
+        "channel".to_owned(),
+        "lead [ms]".to_owned(),
+        format!("phase at {} [deg]", number(top)),
+        "as if servo [rad/s]".to_owned(),
+        format!("gain at {} [dB]", number(above)),
+    ];
+    let mut table = Table::new(title, columns);
+    for channel in all_channels(state.dataset()) {
+        let (tau_s, filter) = (leads.taus_s[channel], leads.filters()[channel]);
+        let phase = filter.map_or(-top * tau_s.max(0.0), |filter| filter.phase(top));
+        let servo = filter.map_or_else(
+            || "–".to_owned(),
+            |filter| format!("{} → {}", telling(filter.zero_rad_s(), 0), telling(filter.lag_rad_s(), 0)),
+        );
+        let gain_db = price.as_ref().map_or(0.0, |price| price.gains_db[channel]);
+        table.row([
+            channel.name(&inputs, &outputs),
+            signed(-s_to_ms(tau_s), 0),
+            signed(phase.to_degrees(), 0),
+            servo,
+            signed(gain_db, 1),
+        ]);
+    }
+    Some(table)
+}
+
+/// What the plots say to who does not see them.
+struct LeadsWords<'a>(&'a Figure);
+
+impl FigureWords for LeadsWords<'_> {
+    fn plot(&self, plot: usize) -> String {
+        self.0.plots[plot].title.clone()
+    }
+
+    fn pointed_ui(&self, _ui: &mut Ui, _plot: usize, _id: &MarkId, _at: [f64; 2]) {}
+}

@@ -38,6 +38,8 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     let frame = Frame::new().inner_margin(Margin { left: PADDING as i8, right: PADDING as i8, top: 8, bottom: 4 });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        // Whatever is written in one part, the next one is no wider.
+        let width = ui.available_width();
         region_ui(ui, Region::Verdict, |ui| verdict_ui(ui, &verdict, palette, commands));
         ui.add_space(8.0);
         if state.display.settings_open {
@@ -46,6 +48,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
             });
             return;
         }
+        ui.set_max_width(width);
         let is_folded = window < LEAST_WITH_RESULT;
         region_ui(ui, Region::Result, |ui| result_panel::result_ui(ui, state, is_folded, palette, commands));
         ui.add_space(8.0);
@@ -106,17 +109,32 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     let everywhere = VerdictRow::count(row.everywhere);
     let all = painted_text(ui, rect, -0.01, &everywhere, body.clone(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
-    let words = super::controls::elided(ui, &row.words, room, BODY_SIZE);
+    // Where there is no room for the band, the word alone: "matched".
+    let fits = text_width(ui, &row.words, BODY_SIZE) <= room;
+    let words = if fits { row.words.as_str() } else { row.words.split(", ").next().unwrap_or_default() };
+    let words = super::controls::elided(ui, words, room, BODY_SIZE);
     painted_text(ui, rect, COLUMNS[1], &words, body, palette.text);
     response.on_hover_text(row.sentence());
+}
+
+fn text_width(ui: &Ui, text: &str, size: f32) -> f32 {
+    ui.painter().layout_no_wrap(text.to_owned(), egui::FontId::proportional(size), egui::Color32::PLACEHOLDER).size().x
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.set_min_height(28.0);
         if let Some(caution) = &verdict.caution {
-            let text = palette.small_warning(format!("⚠ {caution}")).size(BODY_SIZE);
-            ui.add(egui::Label::new(text).truncate()).on_hover_text(caution);
+            let links: f32 = verdict.steps.iter().map(|step| text_width(ui, &step.label, BODY_SIZE) + 24.0).sum();
+            let room = ui.available_width() - links;
+            let whole = format!("⚠ {caution}");
+            let fits = text_width(ui, &whole, BODY_SIZE) <= room;
+            let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
+            let text = palette.small_warning(if fits { whole } else { short }).size(BODY_SIZE);
+            ui.scope(|ui| {
+                ui.set_max_width(room);
+                ui.add(egui::Label::new(text).truncate()).on_hover_text(caution);
+            });
         }
         let mut steps = verdict.steps.iter();
         // What exports is the primary button at the foot.

@@ -242,9 +242,14 @@ impl<'a> Cell<'a> {
         let halves = [rect.with_max_y(lower), rect.with_min_y(lower - 1.0)];
         for (place, (half, (text, font, bar))) in halves.into_iter().zip(values).enumerate() {
             let line = half.shrink2(vec2(6.0, 0.0)).translate(vec2(0.0, -1.0));
-            painted_text(ui, line, 0.0, &text, font, strong);
+            let value = painted_text(ui, line, 0.0, &text, font, strong);
             if let Some(bar) = bar {
-                painted_text(ui, line, -0.01, &bar, small.clone(), palette.dim_text);
+                let galley = ui.painter().layout_no_wrap(bar, small.clone(), palette.dim_text);
+                // A bar of three digits beside a value of three has no room: both stand in the tooltip and in the card.
+                let place = pos2(line.right() - galley.size().x, line.center().y - 0.5 * galley.size().y);
+                if place.x > value.right() {
+                    ui.painter().galley(place, galley, palette.dim_text);
+                }
             }
             if let Some([before, after]) = parts.map(|parts| parts[place]) {
                 underline(ui, half, (before, after), palette);

@@ -31,8 +31,8 @@ struct Format {
 
 /// What tests compare.
 const COMPARED: Format = Format { size: [1280, 720], folder: "tests/data/pictures", scale: 2 };
-/// What the pages show.
-const SHOWN: Format = Format { size: [1600, 900], folder: "assets/screenshots", scale: 1 };
+/// What the pages show: as large as the renderer allows.
+const SHOWN: Format = Format { size: [1280, 720], folder: "assets/screenshots", scale: 1 };
 
 impl Format {
     /// Size of a picture \[px\].

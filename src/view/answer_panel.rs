@@ -125,7 +125,8 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
     ui.horizontal(|ui| {
         ui.set_min_height(28.0);
         if let Some(caution) = &verdict.caution {
-            let links: f32 = verdict.steps.iter().map(|step| text_width(ui, &step.label, BODY_SIZE) + 24.0).sum();
+            let steps = verdict.steps.iter().filter(|step| step.command != export());
+            let links: f32 = steps.map(|step| text_width(ui, &step.label, BODY_SIZE) + 24.0).sum();
             let room = ui.available_width() - links;
             let whole = format!("⚠ {caution}");
             let fits = text_width(ui, &whole, BODY_SIZE) <= room;

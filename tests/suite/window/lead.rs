@@ -41,6 +41,23 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
 }
 
 #[test]
+fn nothing_that_leads_say_makes_the_answer_wider_than_its_panel() {
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
+    };
+    let mut window = Harness::builder().with_size(vec2(1280.0, 720.0)).build_eframe(build);
+    settle(&mut window);
+    let last_cell = |window: &Window| window.get_by_label("Response COL → NZ").rect();
+    let before = last_cell(&window);
+    give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
+    window.get_by_label("Find the cause");
+    assert_eq!(last_cell(&window), before);
+    give(&mut window, setting::PHASE.to(PhaseCorrection::Delay));
+    assert_eq!(last_cell(&window), before, "and back");
+    assert!(before.right() < 1280.0);
+}
+
+#[test]
 fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
     let mut window = window();
     let before = state(&window).shown().unwrap().correction.clone();

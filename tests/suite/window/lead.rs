@@ -23,7 +23,7 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     let last = |window: &Window, role: CurveRole| {
         let curve = drawn(window, role);
         let known = curve.omega.iter().zip(curve.magnitude_db.iter()).filter(|(_, db)| db.is_finite());
-        known.map(|(omega, _)| *omega).last().unwrap()
+        known.map(|(omega, _)| *omega).next_back().unwrap()
     };
     // A little beyond the band of 0.5 to 12 rad/s.
     assert!((last(&window, CurveRole::Corrected) - 20.4).abs() < 1e-6);

@@ -65,7 +65,7 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
             .iter()
             .map(|(name, key, stroke, dynamics)| Curve::new(name, *stroke, omega.clone(), values(*dynamics)).key(key));
         let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y).with_all(curves);
-        price.iter().fold(panel, |panel, price| beyond(panel, price))
+        price.iter().fold(panel, beyond)
     };
     let gain = panel(Axis::linear("Gain [dB]").including(0.0).at_least(3.0), &|dynamics| {
         dynamics.magnitudes_db(&zeros, &omega).collect()

@@ -74,7 +74,10 @@ impl GdcmApp {
             Command::Isolate(model) => {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
-            Command::ShowView(view) => display.arrangement.show(view),
+            Command::ShowView(view) => {
+                self.state.on_start_page = false;
+                self.state.display.arrangement.show(view);
+            }
             Command::ShowGroup(group) => display.arrangement.show_group(group),
             Command::ShowBeside(view) => display.arrangement.show_beside(view),
             Command::ShowInDock(view) => display.arrangement.dock_view(view),

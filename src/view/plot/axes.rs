@@ -131,13 +131,22 @@ impl Ticks {
             Self::Degrees => (Scale::Degrees, VERTICAL_TICK_GAP),
             Self::Frequency(_) | Self::Ratio => (Scale::Logarithmic, DECADE_GAPS[0]),
         };
-        let gaps = TickGaps { labels, equal_steps: 1.5 * labels, lines: DECADE_GAPS[1] };
         let range = Range::new(self.number(bounds.0), self.number(bounds.1));
+        let length = (bounds.1 - bounds.0) / units_per_point;
+        let ticks = |labels: f64| {
+            ticks_of(scale, range, length, TickGaps { labels, equal_steps: 1.5 * labels, lines: DECADE_GAPS[1] })
+        };
+        // One number says nothing of the scale: in a low plot the numbers stand closer.
+        let (mut gap, mut found) = (labels, ticks(labels));
+        while found.iter().filter(|tick| tick.label.is_some()).count() < 2 && gap > CLOSEST {
+            gap = (0.8 * gap).max(CLOSEST);
+            found = ticks(gap);
+        }
         let mark = |tick: Tick| GridMark {
             value: self.place(tick.value),
             step_size: if tick.label.is_some() { LABELLED } else { MINOR } * units_per_point,
         };
-        ticks_of(scale, range, (bounds.1 - bounds.0) / units_per_point, gaps).into_iter().map(mark).collect()
+        found.into_iter().map(mark).collect()
     }
 
     /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
@@ -150,6 +159,9 @@ impl Ticks {
         compact(self.number(mark.value))
     }
 }
+
+/// Labelled ticks are never closer \[pt\]: letters are 11 high.
+const CLOSEST: f64 = 13.0;
 
 /// Shows `message` in the middle of `rect`, which it takes from `ui`.
 pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palette) {
@@ -197,6 +209,8 @@ mod tests {
     #[test]
     fn bounds_that_are_no_range_give_no_ticks() {
         assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
+        // A chart of a record 58 points high.
+        assert_eq!(values(Ticks::Decimal(28.0), (-8.0, 8.0), 58.0), [-5.0, 0.0, 5.0]);
         assert!(Ticks::Degrees.marks((0.0, f64::NAN), f64::NAN).is_empty());
     }
 

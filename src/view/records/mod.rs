@@ -1,6 +1,7 @@
 //! Flight records of the condition shown, and the models identified from them.
 
 mod advanced;
+mod condition_table;
 mod histories;
 mod outcome;
 mod record_list;
@@ -9,11 +10,13 @@ mod records_view;
 mod response;
 mod simulation;
 
+pub use condition_table::condition_table;
 pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};
 
 use advanced::advanced_ui;
+use condition_table::condition_table_ui;
 use histories::{Source, histories_ui, inputs_ui, kept};
 use outcome::{offered_menu_ui, outcome_ui};
 use record_list::{BAD, CHI_SQUARED, columns_ui, cost_text, record_list_ui};

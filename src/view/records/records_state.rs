@@ -13,7 +13,7 @@ use gdcm_core::identification::{
 use gdcm_core::records::{LaidOutRecord, RecordLayout};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
 
-use crate::view::{Palette, State};
+use crate::view::{Palette, Sorting, State};
 
 use super::TimeModel;
 
@@ -35,12 +35,22 @@ pub enum RecordsPage {
     Fit,
     /// Which columns are the channels.
     Columns,
+    /// What was identified in every condition.
+    Conditions,
 }
 
 impl RecordsPage {
     /// Every page, in the order in which they are offered.
-    pub const ALL: [Self; 7] =
-        [Self::Histories, Self::Inputs, Self::Response, Self::Stabilisation, Self::Poles, Self::Fit, Self::Columns];
+    pub const ALL: [Self; 8] = [
+        Self::Histories,
+        Self::Inputs,
+        Self::Response,
+        Self::Stabilisation,
+        Self::Poles,
+        Self::Fit,
+        Self::Columns,
+        Self::Conditions,
+    ];
 
     /// Its name; its name where there is little room, for all of them stand in one line; and what it shows, in a sentence.
     pub fn words(self) -> (&'static str, &'static str, &'static str) {
@@ -62,6 +72,9 @@ impl RecordsPage {
             ),
             Self::Fit => ("Fit", "Fit", "How well the model fits each record and output, in frequency and in time"),
             Self::Columns => ("Columns", "Columns", "Which columns of the chosen record are its time and its channels"),
+            Self::Conditions => {
+                ("Conditions", "Conditions", "What was identified in every condition; a click goes there")
+            }
         }
     }
 }
@@ -232,6 +245,8 @@ pub struct RecordsState {
     pub is_example: bool,
     /// The page shown.
     pub page: RecordsPage,
+    /// How the table of conditions is sorted.
+    pub sorting: Sorting,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
     /// Whether dragging in the charts over time chooses parts.

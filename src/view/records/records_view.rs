@@ -6,8 +6,9 @@ use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, text_field_ui};
 
 use super::{
-    ConditionRecords, Page, RecordsCommand, RecordsPage, advanced_ui, columns_ui, fit_ui, histories_ui,
-    identified_poles_ui, inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui, stabilisation_ui,
+    ConditionRecords, Page, RecordsCommand, RecordsPage, advanced_ui, columns_ui, condition_table_ui, fit_ui,
+    histories_ui, identified_poles_ui, inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui,
+    stabilisation_ui,
 };
 
 /// Width of the list \[pt\].
@@ -40,6 +41,7 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
 pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let mut path = std::mem::take(&mut state.records.path);
+    let mut sorting = state.records.sorting;
     let nothing = ConditionRecords::default();
     let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
     let page = Page { state, records, palette };
@@ -64,9 +66,11 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
             RecordsPage::Poles => identified_poles_ui(ui, page),
             RecordsPage::Fit => fit_ui(ui, page, commands),
             RecordsPage::Columns => columns_ui(ui, page, commands),
+            RecordsPage::Conditions => condition_table_ui(ui, page, &mut sorting, commands),
         }
     });
     state.records.path = path;
+    state.records.sorting = sorting;
 }
 
 /// One tab for each page, in one line that scrolls where it is too long.

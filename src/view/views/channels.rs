@@ -5,7 +5,7 @@ use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Edit, ExplainTarget, Uncertainty};
 use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
-use gdcm_files::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure};
+use gdcm_files::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten};
 
 use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;
@@ -57,6 +57,11 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     let (mut inputs, mut outputs) = (plots.figure.clone(), plots.figure.clone());
     inputs.plots.truncate(state.dataset().inputs().len());
     outputs.plots.drain(..inputs.plots.len());
+    let is_compact = plots.across == Across::Airspeed;
+    if is_compact {
+        let selected = MarkId::Condition(state.condition().id());
+        [&mut inputs, &mut outputs].into_iter().for_each(|figure| quieten(figure, &selected, false));
+    }
     if plots.figure.plots.is_empty() {
         let scene = plots.scene("channels", &plots.figure, state.results.absence());
         figure_ui(ui, &scene, &mut view.inputs, palette);
@@ -76,7 +81,8 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
         let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
         ui.painter().text(place, Align2::LEFT_CENTER, name, FontId::proportional(SMALL_SIZE), palette.dim_text);
         let inner = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
-        let scene = FigureScene { words: (&plots, first), ..plots.scene(name, figure, state.results.absence()) };
+        let scene = plots.scene(name, figure, state.results.absence());
+        let scene = FigureScene { is_compact, words: (&plots, first), ..scene };
         let events = figure_within_ui(ui, inner, &scene, view, palette);
         commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
     }

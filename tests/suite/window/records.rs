@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use gdcm::view::arrangement::View;
-use gdcm::view::records::{RecordsCommand, RecordsPage};
+use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
 use gdcm_core::dataset::RecordKind;
 
 use nalgebra::DMatrix;
@@ -59,6 +59,15 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         click(&mut window, &format!("Page {}", page.words().0));
         assert_eq!(state(&window).records.page, page);
     }
+    let table = condition_table(state(&window));
+    let [id, _, order, cost, held_out_cost, .., time_s] = &table.rows[0][..] else { panic!("{table:?}") };
+    assert_eq!((table.rows.len(), id.as_str()), (1, "10"));
+    assert_eq!(order.parse::<usize>().ok(), found.refined.order());
+    assert_eq!(
+        [cost, held_out_cost].map(|cell| cell.parse::<f64>().unwrap()),
+        [found.cost, held_out].map(|of| (100.0 * of).round() / 100.0)
+    );
+    assert!(time_s.parse::<f64>().is_ok_and(|time_s| time_s > 0.0), "{time_s}");
     click(&mut window, "Use these models");
     click(&mut window, "The refined models");
     let taken = identified_models(&window);

@@ -1,6 +1,7 @@
 //! Identification of a flight condition from its records, and its models against a record in time, as work beside the live answer.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use crate::dataset::{ConditionId, StateSpace};
 use crate::executor::Executor;
@@ -81,6 +82,8 @@ pub struct IdentificationNews {
     pub step: String,
     /// The first model, before it is refined.
     pub first_model: Option<Arc<StateSpace>>,
+    /// How long it took, once it is done \[s\].
+    pub duration_s: Option<f64>,
 }
 
 /// Models of one condition from its flight records.
@@ -143,7 +146,11 @@ impl Job for IdentifyJob {
     type Output = Result<Arc<Identification>, IdentificationError>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        match self.request.identify(executor.as_ref(), &Told { progress, news: &self.news }) {
+        let begin = Instant::now();
+        let found = self.request.identify(executor.as_ref(), &Told { progress, news: &self.news });
+        let duration_s = Some(begin.elapsed().as_secs_f64());
+        self.news.lock().unwrap_or_else(PoisonError::into_inner).duration_s = duration_s;
+        match found {
             Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
             found => Ok(found.map(Arc::new)),
         }

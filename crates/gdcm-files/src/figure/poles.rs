@@ -100,17 +100,25 @@ fn zeros(source: &ConditionSource<'_>, shown: &[SourceModel], (pair, zeros_of): 
     shown.iter().filter(|model| has_zeros(model.role)).map(group).collect()
 }
 
+/// Parts of the width and of the height of a plot within which two values of damping would lie over one another.
+const BESIDE: [f64; 2] = [0.11, 0.07];
+
 /// Lines to read a part of the s-plane by: rays of equal damping ratio, the upper ones with its value where they leave the part, and
 /// arcs of equal frequency.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let reach =
         [real.min, real.max, imaginary.min, imaginary.max].into_iter().fold(0.0f64, |far, end| far.max(end.abs()));
+    let mut named_at: Option<[f64; 2]> = None;
     let rays = DAMPING_RATIOS.into_iter().flat_map(move |ratio| {
         let slope = (1.0 - ratio * ratio).sqrt() / ratio;
         let edge = (-real.min).min(imaginary.max / slope).max(0.0);
+        let place = [edge / real.width(), edge * slope / imaginary.width()];
+        let is_near = |other: [f64; 2]| (0..2).all(|axis| (place[axis] - other[axis]).abs() < BESIDE[axis]);
+        let is_named = edge > 0.0 && !named_at.is_some_and(is_near);
+        named_at = if is_named { Some(place) } else { named_at };
         [1.0, -1.0].map(|side| Guide {
             points: vec![[0.0, 0.0], [-edge, side * edge * slope], [-2.0 * reach, side * 2.0 * reach * slope]],
-            label: if side > 0.0 && edge > 0.0 { format!("ζ {ratio}") } else { String::new() },
+            label: if side > 0.0 && is_named { format!("ζ {ratio}") } else { String::new() },
         })
     });
     let step = step_above(reach / 4.0);

@@ -170,6 +170,7 @@ impl GdcmApp {
         bench.faults.extend(found.faults);
         bench.ignored.extend(found.ignored);
         bench.tables.extend(found.tables);
+        bench.unsaid.extend(found.unsaid);
         if bench.dataset_path.is_empty()
             && let Some(first) = paths.first()
         {

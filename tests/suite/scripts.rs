@@ -46,6 +46,25 @@ fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
 }
 
 #[test]
+fn records_that_identify_no_input_are_status_1() {
+    let desk = Desk::new();
+    // A sweep of the stick, and an output that has nothing to do with it.
+    let mut noise = 12_345_u64;
+    let mut row = |k: u32| {
+        let t = 0.02 * f64::from(k);
+        let sweep = 10.0 * (std::f64::consts::TAU * (0.08 + 0.015 * t) * t).sin();
+        noise = (1_103_515_245 * noise + 12_345) % (1 << 31);
+        format!("{t:.2},{sweep:.4},{:.4}\n", noise as f64 / f64::from(1 << 30) - 1.0)
+    };
+    fs::write(desk.path("a.csv"), "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>()).unwrap();
+    let ended =
+        desk.gdcm(&["identify", "a.csv", "--inputs", "LON", "--outputs", "Q", "--band", "0.5", "12", "--out", "out"]);
+    assert_eq!(ended.status, 1, "{ended:?}");
+    assert!(ended.error.contains("error: no input is identified in these records: the models say nothing of LON"));
+    assert!(desk.path("out/identified.json").exists(), "what was computed can be looked at");
+}
+
+#[test]
 fn everything_is_one_json_object_where_that_is_asked_for() {
     let desk = desk_with_half();
     let object = |arguments: &[&str]| {

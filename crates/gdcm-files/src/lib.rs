@@ -68,4 +68,5 @@ pub use report_file::{ReportSource, assessment_sentence, report, save_report};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};
+pub use text::UnsaidUnit;
 pub use user_state::{add_recent_file, is_first_start, recent_files};

@@ -13,8 +13,8 @@ use crate::file_error::FileError;
 use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::recognise::{Found, recognise};
 use crate::text::{
-    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, read_matrices, read_matrix, read_table,
-    says_quantity, split_complex,
+    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit, read_matrices,
+    read_matrix, read_table, says_quantity, split_complex,
 };
 use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
 
@@ -32,6 +32,8 @@ pub struct FoundModels {
     pub ignored: Vec<String>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
+    /// The units that have to be said before these tables are frequency responses.
+    pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// Number of files that were read.
     pub files: usize,
 }
@@ -83,7 +85,8 @@ impl ModelReading<'_> {
                     if let Some(said) = self.headings.get(name).or(of_all) {
                         table = table.with_headings(said).map_err(wrong)?;
                     }
-                    let found = models_of_table(&table, name).map_err(wrong)?;
+                    let (found, unsaid) = models_of_table(&table, name).map_err(wrong)?;
+                    self.found.unsaid.extend((!unsaid.is_empty()).then(|| (name.to_owned(), unsaid)));
                     self.found.tables.insert(name.to_owned(), table.headings());
                     found
                 }
@@ -298,13 +301,14 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
 
 // Frequency responses out of tables of columns.
 
-/// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words.
-fn models_of_table(table: &TextTable, file: &str) -> Result<Found<FoundModel>, VariableFault> {
+/// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words, with the
+/// units that would make it one.
+fn models_of_table(table: &TextTable, file: &str) -> Result<(Found<FoundModel>, Vec<UnsaidUnit>), VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
-        Err(fault) => {
+        Err(Unrecognised { fault, unsaid }) => {
             let words = format!("{file}: {} columns of numbers; {fault}", table.columns.len());
-            return Ok(Found { ignored: vec![words], ..Found::default() });
+            return Ok((Found { ignored: vec![words], ..Found::default() }, unsaid));
         }
     };
     let values = columns.values(table)?;
@@ -317,7 +321,7 @@ fn models_of_table(table: &TextTable, file: &str) -> Result<Found<FoundModel>, V
         }
         model(response, points, (several, &named), notes)
     });
-    Ok(Found { items: models.collect(), ..Found::default() })
+    Ok((Found { items: models.collect(), ..Found::default() }, Vec::new()))
 }
 
 /// Output and input that the name of a file says, as its last two words: "flight_P_LAT", "frf LAT to P".

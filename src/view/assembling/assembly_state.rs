@@ -1,10 +1,12 @@
 //! What is being imported: the models found, the rules about them, and what is shown of both.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
 use crate::view::{Command, Sorting};
+use gdcm_files::UnsaidUnit;
 
 use super::{COLUMNS, Preview};
 
@@ -73,6 +75,8 @@ pub struct AssemblyState {
     pub ignored: Vec<String>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
+    /// The units that have to be said before these tables are frequency responses.
+    pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// The reading under way.
     pub reading: Option<Reading>,
     /// Index of the model shown.
@@ -114,6 +118,7 @@ impl AssemblyState {
         self.faults.clear();
         self.ignored.clear();
         self.tables.clear();
+        self.unsaid.clear();
     }
 
     /// Takes other rules, which can be undone.
@@ -180,6 +185,24 @@ impl AssemblyState {
                 heading.trim().clone_into(place);
             }
         })
+    }
+
+    /// The command that says the unit of a column in a table, and in every other that has the same headings.
+    pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
+        self.changed(|rules| {
+            for file in self.tables_alike(file) {
+                let said = rules.headings.entry(file.clone()).or_insert_with(|| self.tables[file].clone());
+                if let Some(heading) = said.get_mut(column) {
+                    *heading = format!("{heading} [{unit}]");
+                }
+            }
+        })
+    }
+
+    /// The tables that ask for the same units under the same headings, this one among them.
+    pub fn tables_alike(&self, file: &str) -> Vec<&String> {
+        let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
+        self.tables.keys().filter(|other| of(other.as_str()) == of(file)).collect()
     }
 
     /// The command that says the same about every model below `part`, in the order of the table, of its folder.

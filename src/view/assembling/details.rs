@@ -7,6 +7,7 @@ use egui::{Grid, RichText, Role, Ui};
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui, named, typed_number};
 use gdcm_core::assembly::{ChannelLabel, Part, RowRole, RowRule, Signs};
 use gdcm_core::units::number;
+use gdcm_files::UnsaidUnit;
 
 use super::AssemblyState;
 
@@ -211,13 +212,14 @@ pub(super) fn columns_ui(
     ui.label(RichText::new(format!("Columns of {file}")).strong());
     let hint = "What each holds, and its unit: omega [rad/s], f [Hz], mag P/LAT [dB], phase [deg], re, im, coherence";
     ui.label(palette.small(hint));
-    Grid::new(("columns", file)).num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
+    Grid::new(("columns", file)).num_columns(3).spacing([6.0, 3.0]).show(ui, |ui| {
         for (column, heading) in headings.iter().enumerate().take(MOST_COLUMNS) {
             ui.label(format!("column {}", column + 1));
             let name = format!("Heading of column {} of {file}", column + 1);
             if let Some(said) = entry_ui(ui, &name, heading, "not used", HEADING_WIDTH) {
                 commands.push(assembly.with_heading(file, column, &said));
             }
+            units_ui(ui, assembly, (file, column), commands);
             ui.end_row();
         }
     });
@@ -225,6 +227,28 @@ pub(super) fn columns_ui(
         let more = headings.len() - MOST_COLUMNS;
         ui.label(palette.small(format!("and {more} more, which the rules file can name")));
     }
+}
+
+/// Buttons for the units that a column may be in, where neither its heading nor its numbers say.
+fn units_ui(ui: &mut Ui, assembly: &AssemblyState, (file, column): (&str, usize), commands: &mut Vec<Command>) {
+    let asked = assembly.unsaid.get(file).and_then(|asked| asked.iter().find(|of| of.column == column));
+    let Some(UnsaidUnit { units, .. }) = asked else { return };
+    let files = assembly.tables_alike(file).len();
+    ui.horizontal(|ui| {
+        for unit in units {
+            let button =
+                named(ui.small_button(*unit), Role::Button, format!("Column {} of {file} is in {unit}", column + 1));
+            let hint = match files {
+                1 => format!("Its numbers are in {unit}"),
+                _ => {
+                    format!("Its numbers are in {unit}, here and in the {} other tables with these headings", files - 1)
+                }
+            };
+            if button.on_hover_text(hint).clicked() {
+                commands.push(assembly.with_unit(file, column, unit));
+            }
+        }
+    });
 }
 
 #[cfg(test)]

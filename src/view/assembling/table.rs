@@ -142,15 +142,15 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
         if problems.len() > MOST_LINES {
             ui.label(palette.small(format!("and {} more", problems.len() - MOST_LINES)));
         }
-        let not_read = state.faults.iter().map(|fault| palette.small_warning(format!("not read: {fault}")));
-        let no_models = state.ignored.iter().map(|words| palette.small(format!("no model: {words}")));
-        for text in not_read.chain(no_models).take(MOST_LINES) {
-            ui.add(Label::new(text).wrap());
-        }
         let parts = assembly.parts();
         let unread = state.tables.keys().filter(|file| !parts.iter().any(|part| part.found.file() == file.as_str()));
         for file in unread.take(MOST_TABLES) {
             columns_ui(ui, state, file, palette, commands);
+        }
+        let not_read = state.faults.iter().map(|fault| palette.small_warning(format!("not read: {fault}")));
+        let no_models = state.ignored.iter().map(|words| palette.small(format!("no model: {words}")));
+        for text in not_read.chain(no_models).take(MOST_LINES) {
+            ui.add(Label::new(text).wrap());
         }
     });
 }

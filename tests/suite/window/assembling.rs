@@ -106,3 +106,28 @@ fn the_columns_of_a_table_are_corrected_before_they_are_taken() {
     wait_for_models(&mut window);
     assert_eq!(bench(&window).tables["flight.txt"][2], "", "the file is read again as before");
 }
+
+#[test]
+fn a_unit_that_a_table_does_not_say_is_asked_for_with_a_button() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, first) in [("Q_LON.csv", 8.0), ("P_LAT.csv", 4.0)] {
+        let text = format!("Freq (rad/s),Mag,Phase (deg)\n1,{first},-90\n2,6,-100\n4,2,-120\n");
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let mut window = window();
+    give(&mut window, AssemblingCommand::Add(vec![folder.path().to_owned()]));
+    wait_for_models(&mut window);
+    window.run_steps(2);
+    assert!(bench(&window).assembly().parts().is_empty(), "dB or not: nothing is chosen");
+    let asked = bench(&window).tables.keys().next().unwrap().clone();
+    click(&mut window, &format!("Column 2 of {asked} is in dB"));
+    wait_for_models(&mut window);
+    let bench = bench(&window);
+    let parts = bench.assembly().parts();
+    assert_eq!(parts.len(), 2, "the same is said of the table with the same headings: {:?}", bench.tables);
+    let sizes =
+        parts.iter().map(|part| part.found.response().unwrap()).map(|of| of.re.values[0].hypot(of.im.values[0]));
+    let mut sizes: Vec<f64> = sizes.map(|size| 20.0 * size.log10()).collect();
+    sizes.sort_by(f64::total_cmp);
+    assert!((sizes[0] - 4.0).abs() < 1e-9 && (sizes[1] - 8.0).abs() < 1e-9, "{sizes:?}");
+}

@@ -195,8 +195,12 @@ impl LayoutProposal {
             None => of_file,
         };
         let Some(from) = said.or(rule.unit_in_files.as_deref()).filter(|_| !rule.unit.is_empty()) else {
-            let unit = said.map(|unit| format!(", in {unit}")).unwrap_or_default();
-            self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
+            let unit = match said {
+                Some(unit) => format!(" as it is, in {unit}"),
+                None if rule.unit.is_empty() => " as it is".to_owned(),
+                None => format!(", taken to be in {} as the file does not say", rule.unit),
+            };
+            self.notes.push(format!("{}: column {quoted}{unit}", rule.name));
             return Some(ColumnUse::as_it_is(column));
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {

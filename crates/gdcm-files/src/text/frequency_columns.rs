@@ -49,9 +49,25 @@ pub(crate) struct ResponsePoints {
     pub(crate) coherence: Option<Vec<f64>>,
 }
 
+/// A column whose unit is not said, and whose numbers allow two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct UnsaidUnit {
+    /// The column, from 0.
+    pub column: usize,
+    /// The units that it may be in, as a heading says them.
+    pub units: [&'static str; 2],
+}
+
+/// Why a table is no frequency response, and the units that would make it one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unrecognised {
+    pub(crate) fault: VariableFault,
+    pub(crate) unsaid: Vec<UnsaidUnit>,
+}
+
 impl FrequencyColumns {
     /// Recognises the columns by their names and units; what these do not say is asked for.
-    pub(crate) fn recognise(table: &TextTable) -> Result<Self, VariableFault> {
+    pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
         let name = |index: usize| table.names.as_ref().and_then(|names| names.get(index)).map_or("", String::as_str);
         let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
         let meaning = |index: usize| ColumnMeaning::of(name(index), unit(index));
@@ -60,7 +76,13 @@ impl FrequencyColumns {
         let frequency = reading.frequency()?;
         let responses = reading.responses();
         if !reading.unsaid.is_empty() {
-            return Err(unrecognised(&format!("no unit of {}", reading.unsaid.join(", of "))));
+            let ask = |of: &UnsaidUnit| {
+                let [one, other] = of.units;
+                format!("{} (write [{one}] or [{other}])", place(table, of.column))
+            };
+            let asked: Vec<String> = reading.unsaid.iter().map(ask).collect();
+            let of_units = unrecognised(&format!("no unit of {}", asked.join(", of ")));
+            return Err(Unrecognised { unsaid: reading.unsaid, ..of_units });
         }
         if responses.is_empty() {
             return Err(unrecognised("no magnitude with a phase and no real part with an imaginary part"));
@@ -120,12 +142,13 @@ impl FrequencyColumns {
 }
 
 /// No frequency response: what is missing, in words, and how to say it.
-fn unrecognised(found: &str) -> VariableFault {
+fn unrecognised(found: &str) -> Unrecognised {
     let found = format!(
         "a table with {found} among its columns; say what each column holds in its first line, by --headings, or under \
          \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
     );
-    VariableFault::Format { expected: "a frequency response in columns", found }
+    let fault = VariableFault::Format { expected: "a frequency response in columns", found };
+    Unrecognised { fault, unsaid: Vec::new() }
 }
 
 /// A table while its columns are put together to responses.
@@ -134,7 +157,7 @@ struct Recognition<'t> {
     meanings: &'t [ColumnMeaning],
     notes: Vec<String>,
     /// Columns whose unit is not said, where their numbers allow several.
-    unsaid: Vec<String>,
+    unsaid: Vec<UnsaidUnit>,
 }
 
 /// Columns that belong to one response, by quantity.
@@ -151,7 +174,7 @@ impl Group {
 }
 
 impl Recognition<'_> {
-    fn frequency(&mut self) -> Result<(usize, f64), VariableFault> {
+    fn frequency(&mut self) -> Result<(usize, f64), Unrecognised> {
         let named = self.meanings.iter().position(|meaning| meaning.quantity == Some(Quantity::Frequency));
         let column = named.ok_or_else(|| unrecognised("no frequency"))?;
         let meaning = &self.meanings[column];
@@ -159,7 +182,7 @@ impl Recognition<'_> {
             Some(KnownUnit::Hertz) => (TAU, "Hz"),
             Some(KnownUnit::RadianPerSecond) => (1.0, "rad/s"),
             _ => {
-                self.unsaid.push(format!("{} (write [rad/s] or [Hz])", place(self.table, column)));
+                self.unsaid.push(UnsaidUnit { column, units: ["rad/s", "Hz"] });
                 return Ok((column, 1.0));
             }
         };
@@ -258,10 +281,10 @@ impl Recognition<'_> {
     }
 
     /// A magnitude and a phase, and the columns whose units are neither said nor plain.
-    fn polar(&mut self, (magnitude, phase): (usize, usize)) -> (ResponseParts, Vec<String>) {
+    fn polar(&mut self, (magnitude, phase): (usize, usize)) -> (ResponseParts, Vec<UnsaidUnit>) {
         let mut unsaid = Vec::new();
-        let mut ask = |column: usize, example: &str| {
-            unsaid.push(format!("{} (write {example})", place(self.table, column)));
+        let mut ask = |column: usize, units: [&'static str; 2]| {
+            unsaid.push(UnsaidUnit { column, units });
             false
         };
         let is_negative = self.table.columns[magnitude].iter().any(|value| *value < 0.0);
@@ -269,12 +292,12 @@ impl Recognition<'_> {
             Some(KnownUnit::Decibel) => (true, "its unit says dB"),
             Some(_) => (false, "its unit is not dB"),
             None if is_negative => (true, "some of its numbers are negative"),
-            None => (ask(magnitude, "[dB] or [abs]"), ""),
+            None => (ask(magnitude, ["dB", "abs"]), ""),
         };
         let in_degrees = match self.meanings[phase].unit {
             Some(KnownUnit::Degree) => true,
             Some(KnownUnit::Radian) => false,
-            _ => ask(phase, "[deg] or [rad]"),
+            _ => ask(phase, ["deg", "rad"]),
         };
         if unsaid.is_empty() {
             let size = if in_db { "magnitude in dB" } else { "absolute magnitude" };
@@ -381,7 +404,7 @@ mod frequency_columns_tests {
 
     fn fault(text: &str) -> String {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
-        FrequencyColumns::recognise(&table).unwrap_err().to_string()
+        FrequencyColumns::recognise(&table).unwrap_err().fault.to_string()
     }
 
     const POLAR: ResponseParts = ResponseParts::Polar { magnitude: 1, in_db: true, phase: 2, in_degrees: true };
@@ -442,6 +465,10 @@ mod frequency_columns_tests {
         for unit in ["[rad/s] or [Hz]", "[dB] or [abs]", "[deg] or [rad]", "--headings"] {
             assert!(all.contains(unit), "{all}");
         }
+        let table =
+            read_table("Frequency,Gain,Phase\n0.5,5.8,-42.7\n0.6,9.8,-24.8\n", &ReadingBudget::new(1 << 20)).unwrap();
+        let unsaid = FrequencyColumns::recognise(&table).unwrap_err().unsaid;
+        assert_eq!(unsaid.iter().map(|of| of.column).collect::<Vec<_>>(), [0, 1, 2]);
         let nothing = fault("0.3,10,-90\n1,5,-100\n2,1,-120\n");
         assert!(nothing.contains("no frequency") && nothing.contains("headings"), "{nothing}");
     }

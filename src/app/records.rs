@@ -4,15 +4,19 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::View;
-use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading};
-use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
+use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, WantedDataset};
+use crate::view::{FormKind, View};
+use gdcm_core::assembly::ChannelRule;
+use gdcm_core::dataset::{Band, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError};
 use gdcm_core::records::{
-    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records, leave_out_copies,
+    with_topics_joined,
 };
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
-use gdcm_files::{DatasetOrigin, FileError, FolderProgress, example_records, load_records, read_records};
+use gdcm_files::{
+    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
+};
 
 use super::{DialogPurpose, GdcmApp};
 
@@ -36,6 +40,8 @@ impl GdcmApp {
         let condition = self.state.condition().id();
         match command {
             RecordsCommand::Add(paths) => self.add_records(paths),
+            RecordsCommand::AskDataset => self.ask_record_dataset(),
+            RecordsCommand::MakeDataset => self.make_record_dataset(),
             RecordsCommand::AskFiles => self.ask_path(DialogPurpose::RecordFolder, String::new()),
             RecordsCommand::Show(page) => self.state.records.page = page,
             RecordsCommand::ChooseParts(chooses) => self.state.records.chooses_parts = chooses,
@@ -56,10 +62,71 @@ impl GdcmApp {
             }
             RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
             said => {
+                let channels = self.record_channels();
                 if let Some(records) = self.state.records.conditions.get_mut(&condition) {
-                    say(records, said, &RecordChannels::of_dataset(&self.state.study.dataset));
+                    say(records, said, &channels);
                 }
             }
+        }
+    }
+
+    /// The channels that records are to give: those of the dataset, found where it was said when the dataset was made of records.
+    fn record_channels(&self) -> RecordChannels {
+        let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
+        if let Some((_, said)) = self.said_channels.as_ref().filter(|(of, _)| self.loaded.path() == Some(of)) {
+            let said: Vec<&ChannelRule> = said.inputs.iter().chain(&said.outputs).collect();
+            for rule in channels.inputs.iter_mut().chain(&mut channels.outputs) {
+                if let Some(said) = said.iter().find(|said| said.name == rule.name) {
+                    rule.aliases.clone_from(&said.aliases);
+                }
+            }
+        }
+        channels
+    }
+
+    /// Asks of which channels a dataset is to be made, with what is proposed for the record shown.
+    fn ask_record_dataset(&mut self) {
+        let condition = self.state.condition().id();
+        let Some(records) = self.state.records.conditions.get(&condition) else { return };
+        let Some(row) = records.rows.get(records.chosen) else { return };
+        let beside = self.state.records.sources.first().map(|path| path.with_extension("json.gz"));
+        let path = beside.map_or(String::new(), |path| path.display().to_string());
+        self.state.records.wanted = WantedDataset::proposed(&row.table, self.state.study.settings.band, path);
+        self.state.forms.shown = Some(FormKind::RecordDataset);
+    }
+
+    /// Makes a dataset of the channels asked for, from the files added, in a thread; it is written and opened.
+    fn make_record_dataset(&mut self) {
+        let records = &mut self.state.records;
+        records.wanted.problems.clear();
+        let (channels, band) = match records.wanted.channels() {
+            Ok(said) => said,
+            Err(why) => return records.wanted.problems.push(why),
+        };
+        let (sources, typed) = (records.sources.clone(), PathBuf::from(records.wanted.path.trim()));
+        let path = self.at_home(typed);
+        let written = path.clone();
+        let make = move || dataset_of_files(&sources, channels, band, &path);
+        self.in_thread("a dataset of records", make, move |app, made| match made {
+            Some(Ok((dataset, channels))) => app.write_record_dataset(&dataset, channels, written),
+            Some(Err(problems)) => app.state.records.wanted.problems = problems,
+            None => {}
+        });
+    }
+
+    fn write_record_dataset(&mut self, dataset: &Dataset, channels: RecordChannels, path: PathBuf) {
+        let mut outputs = self.outputs();
+        let written = outputs
+            .check(&[&path])
+            .and_then(|()| add_dataset(dataset, &path, &mut outputs))
+            .and_then(|()| outputs.persist());
+        match written {
+            Ok(()) => {
+                self.state.forms.shown = None;
+                self.said_channels = Some((path.clone(), channels));
+                self.open(path, None);
+            }
+            Err(error) => self.written(Err(error), FormKind::RecordDataset, RecordsCommand::MakeDataset.into()),
         }
     }
 
@@ -76,10 +143,10 @@ impl GdcmApp {
         self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
         let name = format!("the records of condition {id}");
         match &self.loaded.origin {
-            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |dataset| of_example(dataset, id)),
+            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |_, channels| of_example(channels, id)),
             DatasetOrigin::File(path) if !entries.is_empty() => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                self.read_in_thread(name, move |dataset| Ok(of_entries(dataset, id, &entries, &folder)));
+                self.read_in_thread(name, move |_, channels| Ok(of_entries(channels, id, &entries, &folder)));
             }
             DatasetOrigin::File(_) => drop(self.records_of(id)),
         }
@@ -87,20 +154,22 @@ impl GdcmApp {
 
     fn add_records(&mut self, paths: Vec<PathBuf>) {
         let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+        self.state.records.sources.extend(paths.iter().cloned());
         let name = paths.first().map_or(String::new(), |path| path.display().to_string());
         let shown = self.state.condition().id();
-        self.read_in_thread(name, move |dataset| of_files(dataset, shown, &paths));
+        self.read_in_thread(name, move |dataset, channels| of_files((dataset, channels), shown, &paths));
     }
 
     fn read_in_thread(
         &mut self,
         name: String,
-        read: impl FnOnce(&Dataset) -> Result<ReadRecords, FileError> + Send + 'static,
+        read: impl FnOnce(&Dataset, &RecordChannels) -> Result<ReadRecords, FileError> + Send + 'static,
     ) {
+        let channels = self.record_channels();
         let dataset = Arc::clone(self.state.study.file_dataset());
         let of = Arc::clone(&dataset);
         self.state.records.reading = Some(RecordsReading { name });
-        let read = move || read(&dataset);
+        let read = move || read(&dataset, &channels);
         self.in_thread("the reading of records", read, move |app, found| {
             if !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
                 return;
@@ -294,15 +363,13 @@ fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
 }
 
 /// The records of a condition of the example that are inside the program.
-fn of_example(dataset: &Dataset, id: ConditionId) -> Result<ReadRecords, FileError> {
-    let channels = RecordChannels::of_dataset(dataset);
-    let rows: Vec<LaidOutRecord> = example_records(id.0)?.into_iter().map(|table| row_of(table, &channels)).collect();
+fn of_example(channels: &RecordChannels, id: ConditionId) -> Result<ReadRecords, FileError> {
+    let rows: Vec<LaidOutRecord> = example_records(id.0)?.into_iter().map(|table| row_of(table, channels)).collect();
     Ok(ReadRecords { rows: BTreeMap::from([(id, rows)]), faults: Vec::new() })
 }
 
 /// The records that a dataset names.
-fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], folder: &Path) -> ReadRecords {
-    let channels = RecordChannels::of_dataset(dataset);
+fn of_entries(channels: &RecordChannels, id: ConditionId, entries: &[ConditionRecord], folder: &Path) -> ReadRecords {
     let mut found = ReadRecords::default();
     let mut left: Vec<&ConditionRecord> = entries.iter().collect();
     // A file that holds many of them is read once.
@@ -315,7 +382,7 @@ fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], f
             match table {
                 Ok(table) => {
                     let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
-                    let mut row = row_of(table, &channels);
+                    let mut row = row_of(table, channels);
                     (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
                     found.rows.entry(id).or_default().push(row);
                 }
@@ -327,15 +394,48 @@ fn of_entries(dataset: &Dataset, id: ConditionId, entries: &[ConditionRecord], f
 }
 
 /// The records of files: each of the condition that its name says, or else of the one shown.
-fn of_files(dataset: &Dataset, shown: ConditionId, paths: &[PathBuf]) -> Result<ReadRecords, FileError> {
-    let channels = RecordChannels::of_dataset(dataset);
+fn of_files(
+    (dataset, channels): (&Dataset, &RecordChannels),
+    shown: ConditionId,
+    paths: &[PathBuf],
+) -> Result<ReadRecords, FileError> {
     let read = read_records(paths, &Untold)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
-    for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
-        let row = row_of(table, &channels);
+    for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
+        let row = row_of(table, channels);
         let id = row.guess.condition_of(dataset).unwrap_or(shown);
         found.rows.entry(id).or_default().push(row);
     }
     Ok(found)
+}
+
+/// Most problems that are told.
+const MOST_PROBLEMS: usize = 6;
+
+/// A dataset of the records in these files that give the channels asked for, to be written to `path`; the channels have units then.
+fn dataset_of_files(
+    sources: &[PathBuf],
+    mut channels: RecordChannels,
+    band: Band,
+    path: &Path,
+) -> Result<(Dataset, RecordChannels), Vec<String>> {
+    let read = read_records(sources, &Untold).map_err(|error| vec![error.to_string()])?;
+    let (mut entries, mut problems) = (Vec::new(), Vec::new());
+    for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
+        let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        problems.extend(row.problems.iter().map(|problem| format!("{}: {problem}", row.table.name)));
+        if row.problems.is_empty() {
+            channels.take_units(&row.layout, &row.table);
+            entries.push(relative_entry(row.layout.condition_record(&row.table, &row.guess), sources, path));
+        }
+    }
+    if entries.is_empty() {
+        problems.truncate(MOST_PROBLEMS);
+        return Err(problems);
+    }
+    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let name = name.split('.').next().unwrap_or_default();
+    let dataset = dataset_of_records(name, &channels, band, entries).map_err(|error| vec![error.to_string()])?;
+    Ok((dataset, channels))
 }

@@ -16,6 +16,7 @@ use crate::view::{
 };
 use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::{BundleKind, ConditionId};
+use gdcm_core::records::RecordChannels;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 
@@ -44,6 +45,8 @@ pub struct GdcmApp {
     /// Whether a dialog of the desktop is open.
     pub(super) dialog_open: bool,
     pub(super) models: ModelReader,
+    /// Where the channels of a dataset that was made of records are found in them, by the dataset's path.
+    pub(super) said_channels: Option<(PathBuf, RecordChannels)>,
     /// What waits for the answer whether to lose decisions that are not saved.
     pub(super) postponed: Option<PendingAction>,
     /// Whether that is done once they are saved.
@@ -104,6 +107,7 @@ impl GdcmApp {
             received,
             dialog_open: false,
             models: ModelReader::default(),
+            said_channels: None,
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,

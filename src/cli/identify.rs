@@ -10,14 +10,14 @@ use gdcm_core::identification::{
     is_held,
 };
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, ResamplingWish, median_step};
+use gdcm_core::records::{ChannelList, LaidOutRecord, RecordChannels, ResamplingWish, SaidChannel, median_step};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
-use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory};
+use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory, relative_entry};
 
 use super::{
-    ChannelConversion, ChannelDelay, ChannelList, ChannelTopic, Destination, Failure, Group, IdentifyArguments,
-    ReadRecords, TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths,
-    record_table, relative_entry, said_conditions, say,
+    ChannelConversion, ChannelDelay, ChannelTopic, Destination, Failure, Group, IdentifyArguments, ReadRecords,
+    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table,
+    said_conditions, say,
 };
 
 /// The file of what was found.
@@ -224,13 +224,13 @@ fn channels(
     band: Band,
 ) -> Result<RecordChannels, Failure> {
     let mut channels = named_channels(arguments, destination)?;
-    for (name, column) in arguments.references() {
-        if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *name) {
-            let reason = format!("{name} is an input or an output already; a reference is neither");
+    for reference in arguments.references() {
+        if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == reference.name) {
+            let reason = format!("{} is an input or an output already; a reference is neither", reference.name);
             return Err(Failure::Option { option: "--reference", reason });
         }
         // Read as an input, after those of the model.
-        channels.inputs.push(with_column(ChannelRule::named(name.clone()), column.as_ref()));
+        channels.inputs.push(reference.rule());
     }
     let unknown =
         |option, channel: &String| Failure::Option { option, reason: format!("{channel} is none of the channels") };
@@ -264,10 +264,8 @@ fn channels(
 /// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
 fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
     let Some(destination) = destination else {
-        let rules = |list: &Option<ChannelList>| {
-            let channels = list.iter().flat_map(|list| &list.channels);
-            channels.map(|(name, column)| with_column(ChannelRule::named(name.clone()), column.as_ref())).collect()
-        };
+        let rules =
+            |list: &Option<ChannelList>| list.iter().flat_map(|list| &list.channels).map(SaidChannel::rule).collect();
         return Ok(RecordChannels {
             inputs: rules(&arguments.inputs),
             outputs: rules(&arguments.outputs),
@@ -279,21 +277,20 @@ fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destinatio
         ("--inputs", &arguments.inputs, &mut channels.inputs),
         ("--outputs", &arguments.outputs, &mut channels.outputs),
     ] {
-        for (name, column) in list.iter().flat_map(|list| &list.channels) {
+        for SaidChannel { name, unit, column } in list.iter().flat_map(|list| &list.channels) {
             let Some(rule) = rules.iter_mut().find(|rule| rule.name == *name) else {
                 let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
                 let reason = format!("the dataset has no {name} there; it has {}", names.join(", "));
                 return Err(Failure::Option { option, reason });
             };
-            *rule = with_column(std::mem::take(rule), column.as_ref());
+            if !unit.is_empty() && *unit != rule.unit {
+                let reason = format!("{name} has the unit {} in the dataset, not {unit}", rule.unit);
+                return Err(Failure::Option { option, reason });
+            }
+            rule.aliases = column.iter().cloned().collect();
         }
     }
     Ok(channels)
-}
-
-/// The rule of a channel that is this column, where one is said.
-fn with_column(rule: ChannelRule, column: Option<&String>) -> ChannelRule {
-    ChannelRule { aliases: column.cloned().into_iter().collect(), ..rule }
 }
 
 fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<Band, Failure> {

@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 
 use gdcm_core::identification::SearchSpace;
-use gdcm_core::records::SaidConversion;
+use gdcm_core::records::{ChannelList, SaidChannel, SaidConversion};
 use gdcm_core::study::OfferedModels;
 
 use super::{real_number, whole_number};
@@ -17,7 +17,7 @@ pub struct IdentifyArguments {
     /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, CHANNEL [UNIT] or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, in the same way.
@@ -100,7 +100,7 @@ pub struct IdentifyArguments {
 
 impl IdentifyArguments {
     /// The references, each with its column where one is said.
-    pub fn references(&self) -> &[(String, Option<String>)] {
+    pub fn references(&self) -> &[SaidChannel] {
         self.reference.as_ref().map_or(&[], |list| &list.channels)
     }
 
@@ -132,46 +132,6 @@ impl OfferedChoice {
             Self::Measured => OfferedModels::MEASURED,
         }
     }
-}
-
-/// Channels by name, and the columns that they are where the names do not say.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChannelList {
-    /// Channel and column of each.
-    pub channels: Vec<(String, Option<String>)>,
-}
-
-impl FromStr for ChannelList {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let channel = |words: &str| {
-            let (name, column) = match words.split_once('=') {
-                Some((name, column)) => (name.trim(), Some(column.trim().trim_matches('"'))),
-                None => (words.trim(), None),
-            };
-            if name.is_empty() || column.is_some_and(str::is_empty) {
-                return Err(format!("expected CHANNEL or CHANNEL=COLUMN, as P or P=roll_rate, found \"{words}\""));
-            }
-            Ok((name.to_owned(), column.map(str::to_owned)))
-        };
-        let channels: Vec<_> = split_outside_quotes(text).into_iter().map(channel).collect::<Result<_, _>>()?;
-        match channels.iter().enumerate().find(|(at, (name, _))| channels[..*at].iter().any(|(other, _)| other == name))
-        {
-            Some((_, (name, _))) => Err(format!("{name} stands twice")),
-            None => Ok(Self { channels }),
-        }
-    }
-}
-
-/// The parts of a list between commas that stand in no quotation marks.
-fn split_outside_quotes(text: &str) -> Vec<&str> {
-    let mut quoted = false;
-    let is_comma = |c: char| {
-        quoted ^= c == '"';
-        c == ',' && !quoted
-    };
-    text.split(is_comma).collect()
 }
 
 /// What is said of the samples of a channel.
@@ -286,17 +246,6 @@ impl FromStr for ChannelDelay {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn channels_may_say_their_columns() {
-        let list: ChannelList = "LON, P=roll rate".parse().unwrap();
-        assert_eq!(list.channels, [("LON".to_owned(), None), ("P".to_owned(), Some("roll rate".to_owned()))]);
-        let list: ChannelList = "LON=\"elev, yoke\",LAT=#30".parse().unwrap();
-        let columns: Vec<&str> = list.channels.iter().filter_map(|(_, column)| column.as_deref()).collect();
-        assert_eq!(columns, ["elev, yoke", "#30"]);
-        assert!("".parse::<ChannelList>().is_err() && "P=".parse::<ChannelList>().is_err());
-        assert_eq!("P,Q,P".parse::<ChannelList>().unwrap_err(), "P stands twice");
-    }
 
     #[test]
     fn a_unit_or_a_factor_is_of_a_channel() {

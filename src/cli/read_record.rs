@@ -3,13 +3,12 @@
 use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::dataset::ConditionRecord;
 use gdcm_core::records::{
     LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step, with_topics_joined,
 };
 use gdcm_core::study::Table;
 use gdcm_core::units::telling;
-use gdcm_files::{FoundRecords, read_records, relative_folder};
+use gdcm_files::{FoundRecords, read_records};
 
 use super::{Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, error, indented, note};
 
@@ -136,24 +135,6 @@ pub(super) fn hold_out(wanted: &[String], records: &mut [LaidOutRecord]) -> Resu
         found.into_iter().for_each(|record| record.guess.held_out = true);
     }
     Ok(())
-}
-
-/// What a dataset at `dataset` says of a record, its file relative to the dataset's; `asked` are the files and folders that were read.
-pub(super) fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], dataset: &Path) -> ConditionRecord {
-    // A file by itself, or below the folder that was asked for.
-    let place = asked.iter().find_map(|path| {
-        let own = path.file_name().is_some_and(|name| name.to_string_lossy() == entry.file.as_str());
-        let below = path.join(&entry.file);
-        if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
-    });
-    // Topics of a folder whose files were given one by one.
-    let together = || asked.first().and_then(|path| path.parent()).filter(|_| entry.file.is_empty());
-    if let Some(place) = place.or_else(|| together().map(Path::to_owned)) {
-        let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
-        let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
-    }
-    entry
 }
 
 /// A line a record, each behind `indent` spaces.

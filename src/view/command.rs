@@ -209,6 +209,8 @@ pub enum FormKind {
     SaveTable,
     /// What is made of models that are imported.
     Models,
+    /// Which channels of records a dataset is made of, and where.
+    RecordDataset,
     /// Where to save a figure, by path, and how wide.
     SaveFigure,
     /// Where to write the report, by path.

@@ -4,16 +4,17 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Id, Modal, RichText, Role, ScrollArea, TextEdit, Ui};
+use egui::{Button, Context, Id, Label, Modal, RichText, Role, ScrollArea, TextEdit, Ui};
 
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Difference, Edit};
 use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
+use super::records::{RecordsCommand, WantedDataset};
 use super::{
     Command, FormKind, Forms, Palette, State, command_palette_ui, is_entered, keys_page_ui, name_text_field,
-    named_switch,
+    named_switch, text_field_ui,
 };
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -37,6 +38,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
             FormKind::Shortcuts => shortcuts_ui(form, state),
             FormKind::Palette => command_palette_ui(form.ui, state, opens, palette, form.commands),
             FormKind::Reason => reason_ui(form, state),
+            FormKind::RecordDataset => record_dataset_ui(form, &mut state.records.wanted),
             FormKind::About => about_ui(form),
             _ => path_ui(form, kind, state),
         }
@@ -300,6 +302,49 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
             false => Edit::RejectBecause { model, reason },
         };
         form.submit_ui(button, true, entered, Some(Command::DecideInForm(edit)));
+        form.cancel_ui(false);
+    });
+}
+
+/// Most columns of a record that are named.
+const MOST_COLUMNS: usize = 60;
+
+/// Which channels of records a dataset is made of, and where it is written.
+fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
+    form.title("A dataset of these records");
+    form.explain(
+        "With it, models are identified before there is a physics model. Channels are separated by commas; unit and column \
+         where the file does not say them: q [rad/s]=gyro_y, or =#3 for the third column.",
+    );
+    form.ui.add_space(4.0);
+    let mut entered = form.text_ui("Inputs of the dataset", &mut wanted.inputs, "inputs: LON, LAT, or M [N m]=moment");
+    let width = form.ui.available_width();
+    let (name, hint) = ("Outputs of the dataset", "outputs: P, Q, or q [rad/s]=gyro_y");
+    let outputs = text_field_ui(form.ui, name, &mut wanted.outputs, hint, width);
+    entered |= is_entered(form.ui, &outputs);
+    form.line(|form| {
+        form.explain("band [rad/s]");
+        for (name, end) in
+            ["Lower end of the band to identify", "Upper end of the band to identify"].iter().zip(&mut wanted.band)
+        {
+            text_field_ui(form.ui, name, end, "rad/s", 60.0);
+        }
+    });
+    let (name, hint) = ("Path of the dataset of records", "path of a .json.gz file");
+    let path = text_field_ui(form.ui, name, &mut wanted.path, hint, width);
+    entered |= is_entered(form.ui, &path);
+    let columns = wanted.columns.iter().take(MOST_COLUMNS).cloned().collect::<Vec<_>>().join(", ");
+    let more = wanted.columns.len().saturating_sub(MOST_COLUMNS);
+    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+    ScrollArea::vertical().id_salt("columns of the records").max_height(96.0).show(form.ui, |ui| {
+        ui.add(Label::new(form.palette.small(format!("columns: {columns}{more}"))).wrap());
+    });
+    for problem in &wanted.problems {
+        form.ui.add(Label::new(form.palette.small_warning(problem)).wrap());
+    }
+    let is_ready = [&wanted.inputs, &wanted.outputs, &wanted.path].iter().all(|text| !text.trim().is_empty());
+    form.line(|form| {
+        form.submit_ui("Make the dataset", is_ready, entered, Some(RecordsCommand::MakeDataset.into()));
         form.cancel_ui(false);
     });
 }

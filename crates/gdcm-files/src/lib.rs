@@ -62,6 +62,7 @@ pub use opened::{Opened, holds_models, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
+    relative_entry,
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, assessment_sentence, report, save_report};

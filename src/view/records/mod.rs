@@ -11,7 +11,7 @@ mod response;
 mod simulation;
 
 pub use condition_table::condition_table;
-pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
+pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState, WantedDataset};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};
 

@@ -6,14 +6,17 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_core::dataset::{ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_core::dataset::{Band, ChannelSide, ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
     ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
-use gdcm_core::records::{LaidOutRecord, RecordLayout};
+use gdcm_core::records::{
+    ChannelList, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish, SaidChannel,
+};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
+use gdcm_core::units::number;
 
-use crate::view::{Palette, Sorting, State};
+use crate::view::{Palette, Sorting, State, typed_number};
 
 use super::TimeModel;
 
@@ -86,6 +89,10 @@ pub enum RecordsCommand {
     Add(Vec<PathBuf>),
     /// Choose files with the desktop's dialog.
     AskFiles,
+    /// Ask which channels of the records shown a dataset is to be made of.
+    AskDataset,
+    /// Make a dataset of the channels asked for, and open it.
+    MakeDataset,
     /// Show a record.
     Choose(usize),
     /// Use a record, or leave it out.
@@ -236,6 +243,66 @@ pub struct RecordsReading {
     pub name: String,
 }
 
+/// A dataset that is to be made of records, as typed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WantedDataset {
+    /// Inputs, as [`ChannelList`] reads them.
+    pub inputs: String,
+    /// Outputs, in the same way.
+    pub outputs: String,
+    /// Lower and upper end of the band \[rad/s\].
+    pub band: [String; 2],
+    /// Path of the dataset.
+    pub path: String,
+    /// The columns of the record shown, in words.
+    pub columns: Vec<String>,
+    /// Why it could not be made, in words.
+    pub problems: Vec<String>,
+}
+
+impl WantedDataset {
+    /// What is proposed for a record: the channels that its system's documentation knows; others are to be typed.
+    pub fn proposed(table: &RecordTable, band: Band, path: String) -> Self {
+        let known = |inputs: bool| {
+            let of_side = |column: &&RecordColumn| match (column.side, column.meaning) {
+                (Some(side), _) => (side == ChannelSide::Input) == inputs,
+                (None, Some(meaning)) => ["LON", "LAT", "PED", "COL"].contains(&meaning) == inputs && meaning != "TARG",
+                (None, None) => false,
+            };
+            let name = |column: &RecordColumn| column.meaning.unwrap_or(&column.name).to_owned();
+            table.columns.iter().filter(of_side).map(name).collect::<Vec<_>>().join(", ")
+        };
+        let words = |column: &RecordColumn| match &column.unit {
+            Some(unit) => format!("{} [{unit}]", column.name),
+            None => column.name.clone(),
+        };
+        Self {
+            inputs: known(true),
+            outputs: known(false),
+            band: [band.min(), band.max()].map(number),
+            path,
+            columns: table.columns.iter().map(words).collect(),
+            problems: Vec::new(),
+        }
+    }
+
+    /// The channels and the band that are asked for.
+    ///
+    /// # Errors
+    /// In words, what is no channel or no band.
+    pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
+        let rules = |side: &str, text: &str| {
+            let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
+            Ok::<_, String>(list.channels.iter().map(SaidChannel::rule).collect())
+        };
+        let (inputs, outputs) = (rules("inputs", &self.inputs)?, rules("outputs", &self.outputs)?);
+        let end = |text: &String| typed_number(text).ok().flatten().unwrap_or(f64::NAN);
+        let band = Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;
+        let resampling = ResamplingWish { band_end: Some(band.max()), ..ResamplingWish::default() };
+        Ok((RecordChannels { inputs, outputs, resampling, ..RecordChannels::default() }, band))
+    }
+}
+
 /// What the Records view holds. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
@@ -255,6 +322,10 @@ pub struct RecordsState {
     pub spectrogram: Option<usize>,
     /// Path of files, as typed.
     pub path: String,
+    /// The files and folders that were added.
+    pub sources: Vec<PathBuf>,
+    /// The dataset that is to be made of the records shown.
+    pub wanted: WantedDataset,
     /// The reading under way.
     pub reading: Option<RecordsReading>,
     /// What could not be read, in words.

@@ -5,6 +5,8 @@ use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 
 use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, text_field_ui};
 
+use gdcm_core::records::LayoutProblem;
+
 use super::{
     ConditionRecords, Page, RecordsCommand, RecordsPage, advanced_ui, columns_ui, condition_table_ui, fit_ui,
     histories_ui, identified_poles_ui, inputs_ui, offered_menu_ui, outcome_ui, record_list_ui, response_ui,
@@ -109,6 +111,14 @@ fn source_ui(ui: &mut Ui, state: &State, path: &mut String, palette: &Palette, c
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(palette.small(format!("reading {}", reading.name)));
+        });
+    }
+    let records = state.records.conditions.get(&state.condition().id());
+    if records.is_some_and(|of| of.rows.iter().any(|row| row.problems.iter().any(LayoutProblem::is_missing))) {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(palette.small("Other channels than the dataset has?"));
+            let hint = "Models are identified from them before there is a physics model";
+            button_ui(ui, Button::new("Make a dataset of them…"), hint, RecordsCommand::AskDataset, commands);
         });
     }
     for fault in &state.records.faults {

@@ -1,10 +1,11 @@
 //! Flight records in the window: from the example's records to corrected models, by the controls.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gdcm::view::arrangement::View;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
-use gdcm_core::dataset::RecordKind;
+use gdcm_core::dataset::{Band, RecordKind};
+use gdcm_core::response::{FrequencyGrid, PreparedModel};
 
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -273,4 +274,56 @@ fn a_simulation_is_computed_beside_the_window() {
     assert_eq!(simulated, job.record.time_s.len(), "all samples are in some window");
     click(&mut window, "physics model");
     assert!(state(&window).results.simulations.is_empty(), "what is not asked for is not kept");
+}
+
+#[test]
+fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.csv");
+    std::fs::copy(data, folder.path().join("prbs.csv")).unwrap();
+    let mut window = window();
+    show(&mut window, View::Records);
+    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.csv")]));
+    wait_until(&mut window, "the record", |window| !state(window).records.sources.is_empty() && rows_shown(window) > 0);
+    click(&mut window, "Make a dataset of them…");
+    for (field, text) in [
+        ("Inputs of the dataset", "moment=M"),
+        ("Outputs of the dataset", "q [rad/s]=nothing"),
+        ("Lower end of the band to identify", "3"),
+        ("Upper end of the band to identify", "25"),
+    ] {
+        type_into(&mut window, field, text);
+    }
+    click(&mut window, "Make the dataset");
+    wait_until(&mut window, "an answer", |window| !state(window).records.wanted.problems.is_empty());
+    let problems = state(&window).records.wanted.problems.join("\n");
+    assert!(problems.contains("no column is the output q"), "{problems}");
+    type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
+    click(&mut window, "Make the dataset");
+    wait_until(&mut window, "the dataset", |window| state(window).dataset().name() == "prbs");
+    show(&mut window, View::Records);
+    wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
+    click(&mut window, "Identify");
+    let of = ConditionId(1);
+    wait_until(&mut window, "the models", |window| state(window).records.conditions[&of].identification().is_some());
+    let found = state(&window).records.conditions[&of].identification().unwrap().clone();
+    // M14.13, the trial in numpy: 35.9, 30.8 and 22.6 dB at 5, 8 and 20 rad/s.
+    let model = PreparedModel::of(&found.refined.dynamics);
+    for ends in [[(5.0, 35.9), (20.0, 22.6)], [(8.0, 30.8), (20.0, 22.6)]] {
+        let grid = FrequencyGrid::logarithmic(Band::new(ends[0].0, ends[1].0).unwrap(), 2);
+        let response = model.response(&grid);
+        for (value, (omega, expected)) in response.curve(Pair::new(0, 0)).iter().zip(ends) {
+            let found_db = 20.0 * value.norm().log10();
+            assert!((found_db - expected).abs() < 0.7, "{found_db} dB at {omega} rad/s, expected {expected} dB");
+        }
+    }
+    click(&mut window, "Use these models");
+    click(&mut window, "The refined models");
+    assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
+}
+
+/// Records of the condition shown.
+fn rows_shown(window: &Window) -> usize {
+    let state = state(window);
+    state.records.conditions.get(&state.condition().id()).map_or(0, |records| records.rows.len())
 }

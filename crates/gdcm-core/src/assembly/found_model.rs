@@ -171,6 +171,11 @@ impl Row {
 /// The responses that matter in a helicopter, output and input (the paper's Table 2).
 const ON_AXIS: [(&str, &str); 5] = [("P", "LAT"), ("Q", "LON"), ("R", "PED"), ("NY", "PED"), ("NZ", "COL")];
 
+/// Whether a response is one of those that matter in a helicopter, by the names of its output and its input.
+pub fn standard_on_axis(output: &str, input: &str) -> bool {
+    ON_AXIS.iter().any(|(of_output, of_input)| same_channel(output, of_output) && same_channel(input, of_input))
+}
+
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
 /// a helicopter as far as there are such channels. What the files do not say stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {

@@ -165,6 +165,13 @@ pub enum LayoutProblem {
     Topics(TopicError),
 }
 
+impl LayoutProblem {
+    /// Whether a channel has no column.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, Self::NoColumn { .. } | Self::Unnamed { .. })
+    }
+}
+
 /// What is odd in the columns chosen from a record, and can be right.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutCaution {

@@ -9,11 +9,13 @@
 //! Samples are the file's, times a factor; nothing is filtered or taken off. Where the channels have clocks of their own, they are
 //! brought to one (M14.11), and that is said.
 
+mod channel_list;
 mod laid_out_record;
 mod layout_problem;
 mod layout_proposal;
 #[cfg(test)]
 mod layout_tests;
+mod record_dataset;
 mod record_layout;
 mod record_table;
 mod resampling;
@@ -24,6 +26,6 @@ mod topic_tables;
 use crate::dataset::ChannelSide;
 
 pub use self::{
-    laid_out_record::*, layout_problem::*, layout_proposal::*, record_layout::*, record_table::*, resampling::*,
-    spectrogram::*, time_base::*, topic_tables::*,
+    channel_list::*, laid_out_record::*, layout_problem::*, layout_proposal::*, record_dataset::*, record_layout::*,
+    record_table::*, resampling::*, spectrogram::*, time_base::*, topic_tables::*,
 };

@@ -12,6 +12,7 @@ mod record_columns;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::assembly::standard_patterns;
+use gdcm_core::dataset::ConditionRecord;
 use gdcm_core::records::{ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
 
 use crate::file_error::FileError;
@@ -20,6 +21,7 @@ use crate::importer::{
 };
 use crate::recognise::{Found, search};
 use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
+use crate::study_file::relative_folder;
 use crate::text::{NumberedText, TextTable, numbered_words, read_table, sections};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
@@ -290,6 +292,24 @@ pub(super) fn search_records(
             .or_else(|| columns_of(record, variable));
         found.map(|columns| vec![Ok(columns)])
     })
+}
+
+/// What a dataset at `dataset` says of a record, its file relative to the dataset's; `asked` are the files and folders that were read.
+pub fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], dataset: &Path) -> ConditionRecord {
+    // A file by itself, or below the folder that was asked for.
+    let place = asked.iter().find_map(|path| {
+        let own = path.file_name().is_some_and(|name| name.to_string_lossy() == entry.file.as_str());
+        let below = path.join(&entry.file);
+        if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
+    });
+    // Topics of a folder whose files were given one by one.
+    let together = || asked.first().and_then(|path| path.parent()).filter(|_| entry.file.is_empty());
+    if let Some(place) = place.or_else(|| together().map(Path::to_owned)) {
+        let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
+        let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
+    }
+    entry
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::app::{GdcmApp, Setup};
 use gdcm::executor::Pool;
+use gdcm::view::arrangement::View;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{NoticeKind, State};
@@ -97,7 +98,8 @@ pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
         let state = state(window);
-        let shown = state.curves().is_some() && !state.display.drawn.is_empty();
+        let drawn = !state.display.drawn.is_empty() || !state.display.arrangement.is_shown(View::Bode);
+        let shown = state.curves().is_some() && drawn;
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
     window.run_steps(2);

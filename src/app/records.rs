@@ -88,10 +88,9 @@ impl GdcmApp {
     fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else { return };
-        let Some(row) = records.rows.get(records.chosen) else { return };
         let beside = self.state.records.sources.first().map(|path| path.with_extension("json.gz"));
         let path = beside.map_or(String::new(), |path| path.display().to_string());
-        self.state.records.wanted = WantedDataset::proposed(&row.table, self.state.study.settings.band, path);
+        self.state.records.wanted = WantedDataset::proposed(records, self.state.study.settings.band, path);
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 

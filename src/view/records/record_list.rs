@@ -5,7 +5,7 @@ use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as Acc
 use crate::view::{BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
 use gdcm_core::dataset::{ChannelSide, RecordKind};
 use gdcm_core::identification::Signal;
-use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordLayout, TimeBase};
+use gdcm_core::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
 
 use super::{ConditionRecords, Page, RecordsCommand};
@@ -54,14 +54,28 @@ pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     });
     let Some(row) = records.rows.get(records.chosen) else { return };
     kind_ui(ui, records.chosen, row, palette, commands);
-    for (words, color) in row
-        .problems
-        .iter()
-        .map(|problem| (problem.to_string(), palette.warning))
+    for (words, color) in problem_words(&row.problems)
+        .into_iter()
+        .map(|words| (words, palette.warning))
         .chain(row.cautions.iter().map(|caution| (caution.to_string(), palette.dim_text)))
     {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
+}
+
+/// Problems in words; channels without a column in one sentence.
+fn problem_words(problems: &[LayoutProblem]) -> Vec<String> {
+    let missing: Vec<(&String, &String)> = problems
+        .iter()
+        .filter_map(
+            |of| if let LayoutProblem::NoColumn { channel, found, .. } = of { Some((channel, found)) } else { None },
+        )
+        .collect();
+    let [(_, found), _, ..] = missing[..] else { return problems.iter().map(ToString::to_string).collect() };
+    let names: Vec<&str> = missing.iter().map(|(channel, _)| channel.as_str()).collect();
+    let sentence = format!("no column is {}; page Columns says which are (columns: {found})", names.join(", "));
+    let others = problems.iter().filter(|problem| !matches!(problem, LayoutProblem::NoColumn { .. }));
+    std::iter::once(sentence).chain(others.map(ToString::to_string)).collect()
 }
 
 fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut Vec<Command>) {

@@ -254,15 +254,17 @@ pub struct WantedDataset {
     pub band: [String; 2],
     /// Path of the dataset.
     pub path: String,
-    /// The columns of the record shown, in words.
+    /// The columns of the records, in words.
     pub columns: Vec<String>,
     /// Why it could not be made, in words.
     pub problems: Vec<String>,
 }
 
 impl WantedDataset {
-    /// What is proposed for a record: the channels that its system's documentation knows; others are to be typed.
-    pub fn proposed(table: &RecordTable, band: Band, path: String) -> Self {
+    /// What is proposed for the records of a condition: the channels that the documentation of a system knows; others are to be
+    /// typed.
+    pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
+        let tables = || records.rows.iter().map(|row| row.table.as_ref());
         let known = |inputs: bool| {
             let of_side = |column: &&RecordColumn| match (column.side, column.meaning) {
                 (Some(side), _) => (side == ChannelSide::Input) == inputs,
@@ -270,18 +272,25 @@ impl WantedDataset {
                 (None, None) => false,
             };
             let name = |column: &RecordColumn| column.meaning.unwrap_or(&column.name).to_owned();
-            table.columns.iter().filter(of_side).map(name).collect::<Vec<_>>().join(", ")
+            let mut names: Vec<String> = tables().flat_map(|table| &table.columns).filter(of_side).map(name).collect();
+            let mut seen = BTreeSet::new();
+            names.retain(|name| seen.insert(name.clone()));
+            names.join(", ")
         };
-        let words = |column: &RecordColumn| match &column.unit {
-            Some(unit) => format!("{} [{unit}]", column.name),
-            None => column.name.clone(),
+        // Topics that no channel has joined yet are records of their own, under the names of their variables.
+        let words = |table: &RecordTable, column: &RecordColumn| {
+            let topic = table.source.variable.as_ref().map_or(String::new(), |variable| format!("{variable}."));
+            let unit = column.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+            format!("{topic}{}{unit}", column.name)
         };
+        let columns: BTreeSet<String> =
+            tables().flat_map(|table| table.columns.iter().map(move |column| words(table, column))).collect();
         Self {
             inputs: known(true),
             outputs: known(false),
             band: [band.min(), band.max()].map(number),
             path,
-            columns: table.columns.iter().map(words).collect(),
+            columns: columns.into_iter().collect(),
             problems: Vec::new(),
         }
     }

@@ -327,3 +327,30 @@ fn rows_shown(window: &Window) -> usize {
     let state = state(window);
     state.records.conditions.get(&state.condition().id()).map_or(0, |records| records.rows.len())
 }
+
+#[test]
+fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = |k: u32, step_s: f64, of: fn(f64) -> f64| format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)));
+    let stick = (0..2000).map(|k| line(k, 0.01, |k| (0.05 * k).sin())).collect::<String>();
+    let rate = (0..1000).map(|k| line(k, 0.02, |k| (0.1 * k).cos())).collect::<String>();
+    std::fs::write(folder.path().join("stick.csv"), "timestamp,value\n".to_owned() + &stick).unwrap();
+    std::fs::write(folder.path().join("rate.csv"), "timestamp,value\n".to_owned() + &rate).unwrap();
+    let mut window = window();
+    show(&mut window, View::Records);
+    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
+    click(&mut window, "Make a dataset of them…");
+    type_into(&mut window, "Inputs of the dataset", "M=stick");
+    type_into(&mut window, "Outputs of the dataset", "q [rad/s]=rate");
+    click(&mut window, "Make the dataset");
+    let problems = |window: &Window| state(window).records.wanted.problems.join("\n");
+    wait_until(&mut window, "the dataset", |window| {
+        assert_eq!(problems(window), "");
+        state(window).dataset().inputs()[0].name == "M"
+    });
+    show(&mut window, View::Records);
+    wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
+    let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
+    assert!(row.problems.is_empty() && row.flight.is_some(), "{:?}", row.problems);
+}

@@ -221,14 +221,14 @@ impl GdcmApp {
     }
 
     fn identify_conditions(&mut self, conditions: &[ConditionId]) {
-        let band = self.state.study.settings.band;
+        let (band, channels) = (self.state.study.settings.band, self.record_channels());
         if self.state.records.running.is_empty() {
             self.state.records.asked = 0;
         }
         let mut refusal = None;
         for id in conditions {
             let Some(records) = self.state.records.conditions.get(id) else { continue };
-            match records.job(*id, [band.min(), band.max()]) {
+            match records.job(*id, [band.min(), band.max()], &channels) {
                 Ok(job) => {
                     let waiting = self.state.records.running.len();
                     self.state.records.running.retain(|other| other.condition != *id);
@@ -321,6 +321,7 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
             }
         }
         RecordsCommand::SetSearch(search) => records.search = search,
+        RecordsCommand::SetReferences(references) => records.references = references,
         RecordsCommand::AddPart(index, part_s) => add_part(records, index, part_s, channels),
         RecordsCommand::RemovePart(index) => {
             if records.rows.get(index).is_some_and(|row| row.table.part_s.is_some()) {

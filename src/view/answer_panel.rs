@@ -250,6 +250,7 @@ fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, c
     });
     let schedule = state.analysis().is_some_and(|analysis| analysis.schedule.is_ok());
     let count = state.dataset().conditions().len();
-    let what = format!("{count} conditions{}", if schedule { ", schedule" } else { "" });
+    let conditions = if count == 1 { "condition" } else { "conditions" };
+    let what = format!("{count} {conditions}{}", if schedule { ", schedule" } else { "" });
     painted_text(ui, inner, -0.01, &what, egui::FontId::proportional(BODY_SIZE), palette.dim_text);
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Button, Context, Id, Label, Modal, RichText, Role, ScrollArea, TextEdit, Ui};
+use egui::{Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, ScrollArea, TextEdit, Ui, vec2};
 
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Difference, Edit};
@@ -317,22 +317,32 @@ fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
          where the file does not say them: q [rad/s]=gyro_y, or =#3 for the third column.",
     );
     form.ui.add_space(4.0);
-    let mut entered = form.text_ui("Inputs of the dataset", &mut wanted.inputs, "inputs: LON, LAT, or M [N m]=moment");
-    let width = form.ui.available_width();
-    let (name, hint) = ("Outputs of the dataset", "outputs: P, Q, or q [rad/s]=gyro_y");
-    let outputs = text_field_ui(form.ui, name, &mut wanted.outputs, hint, width);
-    entered |= is_entered(form.ui, &outputs);
+    let mut entered = false;
     form.line(|form| {
-        form.explain("band [rad/s]");
-        for (name, end) in
-            ["Lower end of the band to identify", "Upper end of the band to identify"].iter().zip(&mut wanted.band)
-        {
+        form.labelled("inputs");
+        let hint = "LON, LAT, or M [N m]=moment";
+        entered |= form.text_ui("Inputs of the dataset", &mut wanted.inputs, hint);
+    });
+    let texts = [
+        ("outputs", "Outputs of the dataset", &mut wanted.outputs, "P, Q, or q [rad/s]=gyro_y"),
+        ("file", "Path of the dataset of records", &mut wanted.path, "path of a .json.gz file"),
+    ];
+    for (label, name, text, hint) in texts {
+        form.line(|form| {
+            form.labelled(label);
+            let width = form.ui.available_width() - 8.0;
+            let field = text_field_ui(form.ui, name, text, hint, width);
+            entered |= is_entered(form.ui, &field);
+        });
+    }
+    form.line(|form| {
+        form.labelled("band");
+        let names = ["Lower end of the band to identify", "Upper end of the band to identify"];
+        for (name, end) in names.iter().zip(&mut wanted.band) {
             text_field_ui(form.ui, name, end, "rad/s", 60.0);
         }
+        form.explain("rad/s");
     });
-    let (name, hint) = ("Path of the dataset of records", "path of a .json.gz file");
-    let path = text_field_ui(form.ui, name, &mut wanted.path, hint, width);
-    entered |= is_entered(form.ui, &path);
     let columns = wanted.columns.iter().take(MOST_COLUMNS).cloned().collect::<Vec<_>>().join(", ");
     let more = wanted.columns.len().saturating_sub(MOST_COLUMNS);
     let more = if more > 0 { format!(", and {more} more") } else { String::new() };
@@ -373,6 +383,15 @@ impl Form<'_, '_> {
         for (value, text) in choices {
             self.ui.radio_value(chosen, value, text);
         }
+    }
+
+    /// What a field of several is, in front of it.
+    fn labelled(&mut self, text: &str) {
+        let size = vec2(56.0, self.ui.spacing().interact_size.y);
+        self.ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+            ui.set_min_width(size.x);
+            ui.label(self.palette.dim(text));
+        });
     }
 
     /// The button that closes the form; what it asks for may wait for the newest results.

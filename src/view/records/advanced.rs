@@ -43,6 +43,11 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
                     Err(why) => Command::Refuse(why),
                 });
             }
+            let said = records.references.join(", ");
+            if let Some(text) = field_ui(ui, "references", &said, "columns that drove the loop", palette) {
+                let names = text.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty());
+                commands.push(RecordsCommand::SetReferences(names.collect()).into());
+            }
             for (name, said, hint, sets) in lists {
                 if let Some(text) = field_ui(ui, name, &said, hint, palette) {
                     let mut wanted = search.clone();

@@ -6,14 +6,16 @@ use std::sync::Arc;
 
 use egui::Ui;
 
+use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, ChannelSide, ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
     ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
 use gdcm_core::records::{
-    ChannelList, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish, SaidChannel,
+    ChannelList, ColumnUse, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish,
+    SaidChannel,
 };
-use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, NothingToIdentify, OfferedModels};
+use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
 use gdcm_core::units::number;
 
 use crate::view::{Palette, Sorting, State, typed_number};
@@ -109,6 +111,8 @@ pub enum RecordsCommand {
     SetHold(Signal, Hold),
     /// Identify over another band \[rad/s\]; none takes the study's.
     SetBand(Option<[f64; 2]>),
+    /// Identify by way of these columns, recorded references that drove the loop from outside (M14.15); none goes the direct way.
+    SetReferences(Vec<String>),
     /// Try these orders, past windows and poles.
     SetSearch(SearchSpace),
     /// Draw the response of a model to the same inputs, or not.
@@ -150,6 +154,8 @@ pub struct ConditionRecords {
     pub outputs: Vec<ChannelPreparation>,
     /// Band \[rad/s\]; none is the study's.
     pub band: Option<[f64; 2]>,
+    /// Columns of recorded references that drove the loop from outside (M14.15).
+    pub references: Vec<String>,
     /// What is tried in place of the defaults.
     pub search: SearchSpace,
     /// What was identified last, and from what.
@@ -195,15 +201,45 @@ impl ConditionRecords {
         Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) }
     }
 
-    /// The job of what is said now.
+    /// The job of what is said now; `channels` are those that the records give.
     ///
     /// # Errors
-    /// No record is used, or all are held out.
-    pub fn job(&self, condition: ConditionId, band: [f64; 2]) -> Result<IdentifyJob, NothingToIdentify> {
+    /// In words: no record is used, all are held out, or one lacks a reference.
+    pub fn job(
+        &self,
+        condition: ConditionId,
+        band: [f64; 2],
+        channels: &RecordChannels,
+    ) -> Result<IdentifyJob, String> {
         let band = self.band.unwrap_or(band);
-        let mut request = IdentificationRequest::of(self.rows.iter(), self.preparation(), band)?;
+        let mut preparation = self.preparation();
+        preparation.inputs.extend(self.references.iter().map(ChannelPreparation::named));
+        let rows: Vec<LaidOutRecord> =
+            self.used_rows().map(|(_, row)| self.with_references(row, channels)).collect::<Result<_, _>>()?;
+        let request = IdentificationRequest::of(rows.iter(), preparation, band);
+        let mut request = request.map_err(|why| why.to_string())?;
+        request.options.references = self.references.len();
         self.search.set(&mut request.options);
         Ok(IdentifyJob::new(condition, request))
+    }
+
+    /// A record with the references behind its inputs.
+    fn with_references(&self, row: &LaidOutRecord, channels: &RecordChannels) -> Result<LaidOutRecord, String> {
+        if self.references.is_empty() {
+            return Ok(row.clone());
+        }
+        let (mut layout, mut channels) = (row.layout.clone(), channels.clone());
+        for reference in &self.references {
+            let column = row.table.find(reference);
+            let column = column.ok_or_else(|| format!("{}: there is no column \"{reference}\"", row.table.name))?;
+            layout.inputs.push(Some(ColumnUse::as_it_is(column)));
+            channels.inputs.push(ChannelRule::named(reference));
+        }
+        let row = LaidOutRecord::new(Arc::clone(&row.table), layout, row.guess.clone(), &channels);
+        match row.problems.first() {
+            Some(problem) => Err(format!("{}: {problem}", row.table.name)),
+            None => Ok(row),
+        }
     }
 
     /// What is taken into the condition, where something was identified.

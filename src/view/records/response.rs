@@ -36,7 +36,12 @@ struct DrawnResponse {
     unrefined: Curve,
     /// Where the recommended model leaves the measured points \[rad/s\] (M14.17).
     left: Vec<[f64; 2]>,
+    /// Where the reference did not excite the input \[rad/s\] (M14.15).
+    unexcited: Vec<[f64; 2]>,
 }
+
+/// The most that is drawn of a bar or a band on either side \[dB, deg\]: what is not known would hide what is.
+const MOST_HALF: [f64; 2] = [20.0, 180.0];
 
 /// Half height of the mark where the model leaves the points \[dB, deg\].
 const LEFT_DB: f64 = 2.0;
@@ -57,8 +62,10 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
             })
         }
         (Some(found), None) => {
-            let band = records.found.as_ref().map_or([0.1, 10.0], |(job, _)| job.request.options.band);
-            kept(ui, "response", &[Arc::clone(found) as _], pair, || drawn(found, band, pair))
+            let options = records.found.as_ref().map(|(job, _)| &job.request.options);
+            let band = options.map_or([0.1, 10.0], |options| options.band);
+            let by_reference = options.is_some_and(|options| options.references > 0);
+            kept(ui, "response", &[Arc::clone(found) as _], pair, || drawn(found, band, (pair, by_reference)))
         }
         (None, None) => {
             let text = "Nothing was identified yet: choose Identify above. The measured response, the models and their bands stand here then.";
@@ -66,7 +73,7 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
             return;
         }
     };
-    legend_ui(ui, palette);
+    legend_ui(ui, &drawn, palette);
     let area = ui.available_rect_before_wrap();
     ui.allocate_rect(area, egui::Sense::hover());
     let height = 0.5 * area.height();
@@ -80,14 +87,25 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     }
 }
 
-fn legend_ui(ui: &mut Ui, palette: &Palette) {
+/// Half of the 95 % interval of a magnitude or a phase, as far as it is drawn.
+fn half_drawn(sd: &[f64; 2], part: usize) -> f64 {
+    (TWO_SIDED_95 * sd[part - 1]).min(MOST_HALF[part - 1])
+}
+
+fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
+    let sds = drawn.measured.iter().map(|(_, sd, _)| sd).chain(&drawn.bands);
+    let is_cut = |sd: &[f64; 2]| [1, 2].iter().any(|&part| half_drawn(sd, part) < TWO_SIDED_95 * sd[part - 1]);
+    let cut = sds.into_iter().any(is_cut).then_some(("bars and bands end at ± 20 dB and ± 180°", palette.dim_text));
+    let legend = [
+        ("— CT-PBSID, refined, with its 95 % band", palette.identified),
+        ("- - CT-PBSID", palette.accent),
+        ("● measured (local polynomial), ± 1.96 sd", palette.text),
+        ("○ partial coherence below 0.6, or of few lines", palette.dim_text),
+    ];
+    let unexcited = "▬ the reference does not excite";
+    let unexcited = (!drawn.unexcited.is_empty()).then_some((unexcited, palette.dim_text));
     ui.horizontal_wrapped(|ui| {
-        for (text, color) in [
-            ("— CT-PBSID, refined, with its 95 % band", palette.identified),
-            ("- - CT-PBSID", palette.accent),
-            ("● measured (local polynomial), ± 1.96 sd", palette.text),
-            ("○ partial coherence below 0.6, or of few lines", palette.dim_text),
-        ] {
+        for (text, color) in legend.into_iter().chain(unexcited).chain(cut) {
             ui.add(Label::new(RichText::new(text).size(SMALL_SIZE).color(color)).extend());
         }
     });
@@ -103,7 +121,7 @@ fn chart_of<'a>(
     let mut chart = Chart::new(title, ChartAxis::Frequency(state.display.unit), across, label);
     chart.group = Some(egui::Id::unique("identified response"));
     let band = drawn.recommended.iter().zip(&drawn.bands).map(|(at, sd)| {
-        let half = TWO_SIDED_95 * sd[part - 1];
+        let half = half_drawn(sd, part);
         [at[0], at[part] - half, at[part] + half]
     });
     chart.bands.push(ChartBand { points: band.collect(), color: palette.identified.gamma_multiply(0.28) });
@@ -115,12 +133,13 @@ fn chart_of<'a>(
     };
     chart.lines =
         vec![line(&drawn.unrefined, palette.accent, true), line(&drawn.recommended, palette.identified, false)];
-    for left in &drawn.left {
-        // Where the model leaves the points: a bar across the plot.
-        let near = drawn.recommended.iter().filter(|at| (left[0]..=left[1]).contains(&at[0]));
+    // Where the model leaves the points, or the reference shows nothing: a bar about the curve.
+    let marked = drawn.left.iter().map(|span| (span, palette.warning));
+    for (span, color) in marked.chain(drawn.unexcited.iter().map(|span| (span, palette.dim_text))) {
+        let near = drawn.recommended.iter().filter(|at| (span[0]..=span[1]).contains(&at[0]));
         let half = if part == 1 { LEFT_DB } else { LEFT_DEG };
         let points = near.map(|at| [at[0], at[part] - half, at[part] + half]).collect();
-        chart.bands.push(ChartBand { points, color: palette.warning.gamma_multiply(0.25) });
+        chart.bands.push(ChartBand { points, color: color.gamma_multiply(0.25) });
     }
     for trusted in [false, true] {
         let points = drawn.measured.iter().filter(|(.., of)| *of == trusted);
@@ -131,7 +150,7 @@ fn chart_of<'a>(
     chart
 }
 
-fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
+fn drawn(found: &Identification, band: [f64; 2], (pair, by_reference): (Pair, bool)) -> DrawnResponse {
     let (points, at) = (&found.measured.points, (pair.output, pair.input));
     let sds = points.iter().map(|point| Some(point.sd(at)).filter(|sd| sd.is_finite()).unwrap_or(0.0));
     let is_narrow = |point: &EstimatePoint| point.half_width <= NARROW_WINDOW * point.omega;
@@ -158,7 +177,15 @@ fn drawn(found: &Identification, band: [f64; 2], pair: Pair) -> DrawnResponse {
         unrefined: found.unrefined.state_space().map_or_else(Curve::new, |of| model_curve(of, band, pair, reference)),
         measured,
         left: left.collect(),
+        unexcited: if by_reference { unexcited(points, at) } else { Vec::new() },
     }
+}
+
+/// Where the coherence of an input with the reference is too low for a response.
+fn unexcited(points: &[EstimatePoint], at: (usize, usize)) -> Vec<[f64; 2]> {
+    let is_low = |point: &EstimatePoint| point.partial_coherence[at] < TRUSTED_COHERENCE;
+    let runs = points.chunk_by(|a, b| is_low(a) == is_low(b)).filter(|run| is_low(&run[0]));
+    runs.map(|run| [run[0].omega, run[run.len() - 1].omega]).collect()
 }
 
 /// The response of a model, the phase on the branch nearest to `reference`.

@@ -320,6 +320,28 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Use these models");
     click(&mut window, "The refined models");
     assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
+
+    // Its sweep by way of the position reference that drove the loop: 31.4 dB at 8 rad/s, where the direct way is 1.3 dB off.
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/sweep.csv");
+    give(&mut window, RecordsCommand::Add(vec![data]));
+    wait_until(&mut window, "the sweep", |window| rows_shown(window) == 2);
+    give(&mut window, RecordsCommand::SetUsed(0, false));
+    give(&mut window, RecordsCommand::SetReferences(vec!["nothing".to_owned()]));
+    give(&mut window, RecordsCommand::Identify);
+    let told = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(told.contains("sweep: there is no column \"nothing\""), "{told}");
+    click(&mut window, "Advanced");
+    type_into(&mut window, "Identification: references", "x0");
+    click(&mut window, "Identify");
+    wait_until(&mut window, "the models by reference", |window| {
+        let records = &state(window).records.conditions[&of];
+        records.found.as_ref().is_some_and(|(job, found)| job.request.options.references == 1 && found.is_ok())
+    });
+    let found = state(&window).records.conditions[&of].identification().unwrap().clone();
+    let grid = FrequencyGrid::logarithmic(Band::new(8.0, 20.0).unwrap(), 2);
+    let at_8_db =
+        20.0 * PreparedModel::of(&found.refined.dynamics).response(&grid).curve(Pair::new(0, 0))[0].norm().log10();
+    assert!((at_8_db - 30.8).abs() < 1.0, "{at_8_db} dB");
 }
 
 /// Records of the condition shown.

@@ -29,8 +29,10 @@ impl CouplingMatrices {
         }
     }
 
-    /// The same with the unknowns at these values, each entry's powers of the airspeed from 0 on.
-    pub(super) fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
+    /// The same with the unknowns at these values, of each entry of `M` every power of the airspeed from 0 on; what is not among the
+    /// unknowns is 0.
+    #[must_use]
+    pub fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
         let (inputs, outputs) = self.feedback.shape();
         let mut mixing = vec![Vec::new(); inputs * inputs];
         let mut feedback = DMatrix::zeros(inputs, outputs);

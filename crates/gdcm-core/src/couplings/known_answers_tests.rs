@@ -6,10 +6,12 @@ use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 
 use super::*;
+use crate::correction::Pade;
 use crate::dataset::{ConditionId, Pair, PairTable, StateSpace};
 use crate::executor::Sequential;
 use crate::progress::Unobserved;
 use crate::response::FrequencyResponse;
+use crate::schedule::Airspeeds;
 
 static REFERENCE: LazyLock<Value> =
     LazyLock::new(|| serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap());
@@ -99,5 +101,28 @@ fn every_solve_of_the_disturbed_aircraft_agrees() {
             let miss = (coefficients[place] - expected).abs();
             assert!(miss < disturbed["tolerance"].as_f64().unwrap(), "solve {solve}, {place}: {miss:e}");
         }
+    }
+}
+
+/// Couplings that are the same at every airspeed.
+pub(super) fn constant(mixing: &DMatrix<f64>, feedback: &DMatrix<f64>) -> CouplingMatrices {
+    let (inputs, outputs) = feedback.shape();
+    let entries = (0..inputs).flat_map(|to| (0..inputs).map(move |from| (to, from)));
+    let of_mixing = entries.map(|(to, from)| (Unknown::Mixing { to, from, power: 0 }, mixing[(to, from)]));
+    let entries = (0..inputs).flat_map(|input| (0..outputs).map(move |output| (input, output)));
+    let of_feedback = entries.map(|(input, output)| (Unknown::Feedback { input, output }, feedback[(input, output)]));
+    let (unknowns, values): (Vec<Unknown>, Vec<f64>) = of_mixing.chain(of_feedback).unzip();
+    CouplingMatrices::none(Airspeeds::new(vec![60.0], 2.0).unwrap(), inputs, outputs).with(&unknowns, &values)
+}
+
+#[test]
+fn a_state_space_with_feed_through_is_coupled_exactly() {
+    let known = &REFERENCE["state_space"];
+    let of = |name: &str| matrix(&known[name]);
+    let physics = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
+    let coupled = constant(&of("M"), &of("K")).model(&physics, 60.0, Pade::new(4).unwrap()).unwrap();
+    let found = [coupled.a(), coupled.b(), coupled.c(), coupled.d()];
+    for (found, expected) in found.into_iter().zip(known["renovated"].as_array().unwrap()) {
+        assert!((found - matrix(expected)).amax() < known["tolerance"].as_f64().unwrap());
     }
 }

@@ -52,3 +52,5 @@ use weighted_condition::*;
 
 #[cfg(test)]
 mod known_answers_tests;
+#[cfg(test)]
+mod property_tests;

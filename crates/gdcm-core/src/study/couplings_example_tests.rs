@@ -1,0 +1,298 @@
+//! Mixing and feedback of the reference dataset, from M15's signed delays to the gains and costs of what is coupled, against
+//! independent numpy code (`tests/data/reference/mixing.json`).
+
+use std::io::Read;
+use std::sync::{Arc, LazyLock};
+
+use nalgebra::DMatrix;
+use serde_json::Value;
+
+use super::*;
+use crate::correction::{Channels, Pade};
+use crate::couplings::*;
+use crate::dataset::*;
+use crate::executor::{Executor, Sequential, Task};
+use crate::response::{FrequencyGrid, FrequencyResponse};
+use crate::schedule::CostChange;
+
+static REFERENCE: LazyLock<Value> =
+    LazyLock::new(|| serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap());
+static DATASET: LazyLock<Arc<Dataset>> = LazyLock::new(|| Arc::new(reference_dataset()));
+/// The reference dataset with delays or leads, nothing rejected.
+static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| with_leads(Arc::clone(&DATASET)));
+static MIXING: LazyLock<CouplingFit> = LazyLock::new(|| fit(&problem(CouplingKind::Mixing)));
+static FEEDBACK: LazyLock<CouplingFit> = LazyLock::new(|| fit(&problem(CouplingKind::MixingAndFeedback)));
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    list(value).iter().map(number).collect()
+}
+
+fn text(value: &Value) -> String {
+    value.as_str().unwrap().to_owned()
+}
+
+fn matrix(value: &Value) -> DMatrix<f64> {
+    let rows: Vec<Vec<f64>> = list(value).iter().map(numbers).collect();
+    DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column])
+}
+
+fn model(value: &Value, origin: Origin) -> Model {
+    let [a, b, c, d] = ["A", "B", "C", "D"].map(|name| matrix(&value[name]));
+    Model::new(text(&value["name"]), origin, Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()))
+}
+
+fn condition(value: &Value) -> Condition {
+    let physics = list(&value["physics_models"]).iter().map(|of| {
+        let perturbation = None;
+        let is_nominal = of["role"].as_str() == Some("nominal");
+        model(of, if is_nominal { Origin::Nominal { perturbation } } else { Origin::Perturbed { perturbation } })
+    });
+    let identified = list(&value["identified_models"]).iter();
+    let identified = identified.map(|of| model(of, Origin::Identified { method: None, order: None }));
+    let flight_state = FlightState::at(ConditionId(value["id"].as_i64().unwrap()), number(&value["airspeed_kt"]));
+    Condition::new(flight_state, physics.collect(), identified.collect()).unwrap()
+}
+
+fn reference_dataset() -> Dataset {
+    let packed = include_bytes!("../../../../tests/data/reference/example-dataset.json.gz");
+    let mut unpacked = String::new();
+    flate2::read::GzDecoder::new(packed.as_slice()).read_to_string(&mut unpacked).unwrap();
+    let file: Value = serde_json::from_str(&unpacked).unwrap();
+    let channels = |side: &str| -> Vec<Channel> {
+        list(&file[side]).iter().map(|of| Channel::new(text(&of["name"]), text(&of["unit"]))).collect()
+    };
+    let (inputs, outputs) = (channels("inputs"), channels("outputs"));
+    let is_on_axis = |pair: Pair| {
+        let named = |on_axis: &&Value| {
+            on_axis[0] == outputs[pair.output].name.as_str() && on_axis[1] == inputs[pair.input].name.as_str()
+        };
+        list(&file["on_axis"]).iter().any(|on_axis| named(&on_axis))
+    };
+    let header = DatasetHeader {
+        name: "reference".into(),
+        description: String::new(),
+        on_axis: PairTable::from_fn(outputs.len(), inputs.len(), is_on_axis),
+        band: Band::new(number(&file["frequency_band"]["min"]), number(&file["frequency_band"]["max"])).unwrap(),
+        inputs,
+        outputs,
+    };
+    Dataset::new(header, list(&file["conditions"]).iter().map(condition).collect()).unwrap()
+}
+
+fn with_leads(dataset: Arc<Dataset>) -> Analysis {
+    let mut study = Study::new(dataset);
+    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+fn results(analysis: &Analysis) -> impl Iterator<Item = &ConditionAnalysis> {
+    analysis.conditions.values().map(|result| result.as_ref().unwrap())
+}
+
+fn representative(result: &ConditionAnalysis, kind: BundleKind) -> &Model {
+    let chosen = match kind {
+        BundleKind::Physics => result.comparison.physics.model,
+        BundleKind::Identified => result.comparison.identified.model,
+    };
+    &result.condition.bundle(kind)[chosen]
+}
+
+fn mean_signed_delays_s(analysis: &Analysis) -> Channels<f64> {
+    let delays_s: Vec<_> = results(analysis).map(|result| result.correction.signed_delays_s()).collect();
+    mean_delays_s(&delays_s).unwrap()
+}
+
+fn problem(kind: CouplingKind) -> CouplingProblem {
+    let settings = &ANALYSIS.study.settings;
+    let grid = &FrequencyGrid::logarithmic(settings.band, settings.points);
+    let delays_s = mean_signed_delays_s(&ANALYSIS);
+    let condition = |result: &ConditionAnalysis| {
+        let response = |kind| FrequencyResponse::of(&representative(result, kind).dynamics, grid);
+        let leads = result.correction.leads.as_ref().unwrap();
+        let flight = response(BundleKind::Identified);
+        CouplingCondition {
+            id: result.condition.id(),
+            airspeed_kt: result.condition.flight_state().airspeed_kt,
+            physics: Arc::new(response(BundleKind::Physics)),
+            flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
+            usable: result.comparison.representative.mismatch.map(|_, mismatch| mismatch.is_some()),
+            deviation: None,
+            coherence: None,
+        }
+    };
+    CouplingProblem {
+        kind,
+        omega: grid.omega().into(),
+        on_axis: DATASET.on_axis().clone(),
+        conditions: results(&ANALYSIS).map(condition).collect(),
+        options: CouplingOptions::default(),
+    }
+}
+
+fn fit(problem: &CouplingProblem) -> CouplingFit {
+    fit_couplings(problem, &Sequential, &Unobserved).unwrap()
+}
+
+/// The dataset of the representatives alone, the physics models coupled.
+fn coupled(matrices: &CouplingMatrices) -> Arc<Dataset> {
+    let condition = |result: &ConditionAnalysis| {
+        let state = result.condition.flight_state();
+        let physics = representative(result, BundleKind::Physics).state_space().unwrap();
+        let physics = matrices.model(physics, state.airspeed_kt, Pade::new(4).unwrap()).unwrap();
+        let nominal = Model::new("coupled", Origin::Nominal { perturbation: None }, Dynamics::StateSpace(physics));
+        let flight = representative(result, BundleKind::Identified).clone();
+        Condition::new(state.clone(), vec![nominal], vec![flight]).unwrap()
+    };
+    Arc::new(Dataset::new(DATASET.header(), results(&ANALYSIS).map(condition).collect()).unwrap())
+}
+
+#[track_caller]
+fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (place, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert!((found - expected).abs() < tolerance, "{what}, {place}: found {found}, expected {expected}");
+    }
+}
+
+fn row_by_row(matrix: &DMatrix<f64>) -> Vec<f64> {
+    matrix.transpose().as_slice().to_vec()
+}
+
+/// `[on-axis, others]` of the corrected J, in the mean over the conditions.
+fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 2] {
+    let mut sums = [(0.0, 0.0); 2];
+    for table in of {
+        for (pair, change) in table.iter() {
+            let sum = &mut sums[usize::from(!DATASET.on_axis()[pair])];
+            *sum = (sum.0 + change.unwrap().corrected.total(), sum.1 + 1.0);
+        }
+    }
+    sums.map(|(sum, count)| sum / count)
+}
+
+fn the_example_agrees(fit: &CouplingFit, name: &str) {
+    let (reference, tolerance) = (&REFERENCE["example"][name], &REFERENCE["tolerance"]);
+    let [coefficient, tau_s, cost] = ["coefficients", "tau_s", "mean_J"].map(|name| number(&tolerance[name]));
+    let delays_s = mean_signed_delays_s(&ANALYSIS);
+    assert_close("tau_out", &delays_s.outputs, &numbers(&reference["tau_out_s"]), tau_s);
+    assert_close("tau_in", &delays_s.inputs, &numbers(&reference["tau_in_s"]), tau_s);
+    assert!(fit.residual < 1e-12, "{:e}", fit.residual);
+    for (solve, expected) in list(&reference["coefficients"]).iter().enumerate() {
+        assert_close(&format!("solve {solve}"), &fit.coefficients[solve], &numbers(expected), coefficient);
+    }
+    let analysis = with_leads(coupled(&fit.matrices));
+    for expected in list(&reference["conditions"]) {
+        let id = ConditionId(expected["id"].as_i64().unwrap());
+        let found = analysis.condition(id).unwrap();
+        let mixing = fit.matrices.normalised_mixing(found.condition.flight_state().airspeed_kt);
+        let (of_m, of_k) = (&expected["M"], &expected["K"]);
+        let expected_mixing = matrix(of_m);
+        let normalised = DMatrix::from_fn(4, 4, |to, from| expected_mixing[(to, from)] / expected_mixing[(from, from)]);
+        assert_close("M", &row_by_row(&mixing), &row_by_row(&normalised), coefficient);
+        assert_close("K", &row_by_row(fit.matrices.feedback()), &row_by_row(&matrix(of_k)), coefficient);
+        let (at, signed_s) = (format!("condition {id}"), found.correction.signed_delays_s());
+        assert_close(&at, &signed_s.outputs, &numbers(&expected["tau_out_s"]), tau_s);
+        assert_close(&at, &signed_s.inputs, &numbers(&expected["tau_in_s"]), tau_s);
+        assert_close(&at, &found.correction.output_gains, &numbers(&expected["k_out"]), coefficient);
+        assert_close(&at, &found.correction.input_gains, &numbers(&expected["k_in"]), coefficient);
+    }
+    let own = mean_costs(results(&analysis).map(|result| (*result.cost).clone()));
+    assert_close("own J", &own, &numbers(&reference["mean_J"]["own"]), cost);
+    let choice = AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction: AssessedCorrection::Scheduled,
+        average: analysis.study.settings.cost_average,
+    };
+    let table = AssessmentTable::of(&analysis, choice);
+    let change = |id: ConditionId| PairTable::from_fn(6, 4, |pair| table.change(id, pair));
+    let scheduled = mean_costs(analysis.conditions.keys().map(|&id| change(id)));
+    assert_close("scheduled J", &scheduled, &numbers(&reference["mean_J"]["scheduled"]), cost);
+}
+
+#[test]
+fn the_example_with_mixing_agrees() {
+    the_example_agrees(&MIXING, "mixing");
+}
+
+#[test]
+fn the_example_with_mixing_and_feedback_agrees() {
+    the_example_agrees(&FEEDBACK, "feedback");
+}
+
+#[test]
+fn the_loop_of_the_example_is_far_from_ringing_and_few_poles_become_unstable() {
+    let (matrices, band) = (&FEEDBACK.matrices, DATASET.band());
+    let least = |low: f64, high: f64| {
+        let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
+        let margin = |model: &Model| {
+            let singular = matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
+            LoopMargin::of(&singular, grid.omega()).unwrap().least
+        };
+        let conditions = DATASET.conditions().iter();
+        let models = conditions.flat_map(|condition| condition.bundle(BundleKind::Physics));
+        models.map(margin).fold(f64::INFINITY, f64::min)
+    };
+    let (inside, above) = (least(band.min(), band.max()), least(band.max(), 10.0 * band.max()));
+    let below = least(0.1 * band.min(), band.min());
+    eprintln!("least singular values: {below} below, {inside} in the band, {above} above");
+    let (mut models, mut unstable) = (0, Vec::new());
+    for condition in DATASET.conditions() {
+        for model in condition.bundle(BundleKind::Physics) {
+            let airspeed_kt = condition.flight_state().airspeed_kt;
+            let physics = model.state_space().unwrap();
+            let shifts = matrices.pole_shifts(physics, airspeed_kt, Pade::new(4).unwrap()).unwrap();
+            models += 1;
+            unstable.extend(shifts.into_iter().filter(PoleShift::is_newly_unstable));
+        }
+    }
+    eprintln!("{models} models, newly unstable: {unstable:?}");
+    assert!(inside > 0.8 && above > 0.9 && below > 0.4, "{inside} {above} {below}");
+    assert!(unstable.len() < 5 && unstable.iter().all(|shift| shift.after.norm() < 0.01), "{unstable:?}");
+}
+
+#[test]
+fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
+    let problem = problem(CouplingKind::MixingAndFeedback);
+    let fits = left_out_fits(&problem, &Sequential, &Unobserved).unwrap();
+    assert_eq!(fits.len(), 11);
+    let airspeed_kt = FEEDBACK.matrices.airspeeds().mean_kt;
+    let bars = CouplingBars::of(&fits, airspeed_kt, 0.9).unwrap();
+    eprintln!("M~ {:.4} bars {:.4}", FEEDBACK.matrices.normalised_mixing(airspeed_kt), bars.mixing);
+    eprintln!("K {:.4} bars {:.4}", FEEDBACK.matrices.feedback(), bars.feedback);
+    let mixing = bars.significant_mixing(&FEEDBACK.matrices, airspeed_kt);
+    let (inputs, _) = DATASET.names_of_channels();
+    let input = |name: &str| inputs.iter().position(|of| of == name).unwrap();
+    assert!(mixing[(input("LAT"), input("LON"))] && !mixing[(0, 0)]);
+    let cyclic = cyclic_inputs(DATASET.on_axis(), |output| DATASET.outputs()[output].unit.contains("deg/s"));
+    assert_eq!(cyclic, Some([input("LON"), input("LAT")]));
+    let shares = mixing_shares(&FEEDBACK.matrices.normalised_mixing(airspeed_kt), cyclic);
+    eprintln!("{:?}", &shares[..3]);
+    let swashplate = shares.iter().find(|share| (share.to, share.from) == (input("LAT"), input("LON"))).unwrap();
+    assert!((swashplate.swashplate_phase_deg.unwrap().to_radians().tan() - swashplate.share).abs() < 1e-15);
+    let fed = feedback_shares(&problem, &FEEDBACK.matrices);
+    eprintln!("{:?}", &fed[..4]);
+    assert!(fed.len() == 24 && fed.windows(2).all(|of| of[0].share >= of[1].share));
+}
+
+/// The last piece of work first.
+struct Backwards;
+
+impl Executor for Backwards {
+    fn carry_out(&self, tasks: Vec<Task<'_>>) {
+        tasks.into_iter().rev().for_each(|task| task());
+    }
+}
+
+#[test]
+fn a_fit_is_the_same_to_the_last_bit_whoever_carries_it_out() {
+    let found = fit_couplings(&problem(CouplingKind::MixingAndFeedback), &Backwards, &Unobserved).unwrap();
+    assert_eq!(found, *FEEDBACK);
+}

@@ -56,3 +56,55 @@ pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f6
 pub fn coherence_deviation(coherence: &PairTable<Vec<f64>>, measurement: &Measurement) -> PairTable<Vec<f64>> {
     coherence.map(|_, curve| curve.iter().map(|&coherence| measurement.deviation(coherence)).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::correction::LeadSettings;
+    use crate::dataset::Pair;
+
+    fn signed_delays() -> Channels<f64> {
+        Channels { inputs: vec![0.04, -0.03], outputs: vec![-0.02] }
+    }
+
+    #[test]
+    fn the_mean_delay_of_each_channel_is_over_the_conditions() {
+        let other = Channels { inputs: vec![0.0, -0.05], outputs: vec![0.02] };
+        let mean = mean_delays_s(&[signed_delays(), other]).unwrap();
+        assert_eq!((mean.inputs, mean.outputs), (vec![0.02, -0.04], vec![0.0]));
+        assert_eq!(mean_delays_s(&[]), None);
+    }
+
+    #[test]
+    fn what_is_left_has_no_delay_and_no_filter_of_its_channels() {
+        let omega = [0.5, 2.0, 12.0];
+        let design = LeadDesign::new(LeadSettings::default(), Arc::from(omega));
+        let [second, output] = [-0.03, -0.02].map(|tau_s| design.filter(tau_s).unwrap());
+        let delayed = |omega: f64| Complex::from_polar(1.0, -0.04 * omega);
+        let flight = PairTable::from_fn(1, 2, |pair| {
+            let input = |omega| if pair.input == 0 { delayed(omega) } else { second.at(omega) };
+            omega.iter().map(|&omega| 3.0 * input(omega) * output.at(omega)).collect()
+        });
+        let left = without_channels(&FrequencyResponse::new(flight), &omega, &signed_delays(), Some(&design));
+        for (_, curve) in left.curves().iter() {
+            assert!(curve.iter().all(|value| (value - 3.0).norm() < 1e-14), "{curve:?}");
+        }
+        let ones = FrequencyResponse::new(PairTable::filled(1, 2, vec![Complex::from(1.0); 3]));
+        let turned = without_channels(&ones, &omega, &signed_delays(), None);
+        let expected = Complex::from_polar(1.0, -0.05 * omega[2]);
+        assert!((turned.curve(Pair::new(0, 1))[2] - expected).norm() < 1e-15, "pure delays where there is no design");
+    }
+
+    #[test]
+    fn a_deviation_is_the_mean_square_of_its_magnitude_and_its_phase() {
+        let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
+        let bands = ModelBands::new(vec![1.0, 10.0], table(20.0 / LN_10 * 0.03), table(0.04_f64.to_degrees())).unwrap();
+        let deviation = &response_deviation(&bands, &[0.5, 3.0])[Pair::new(0, 0)];
+        assert!(deviation.iter().all(|sd| (sd - (0.5 * (0.0009_f64 + 0.0016)).sqrt()).abs() < 1e-15));
+        let measurement = Measurement { averages: 8.0, window_s: None, factor: 1.0 };
+        let deviation = coherence_deviation(&PairTable::filled(1, 1, vec![0.5, 1.0]), &measurement);
+        assert_eq!(deviation[Pair::new(0, 0)], [0.25, 0.0]);
+    }
+}

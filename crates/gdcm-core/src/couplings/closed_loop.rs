@@ -3,8 +3,9 @@
 //! ```text
 //! F = (I - H K)^-1 H = H (I - K H)^-1: of the two inverses the one of m x m
 //! 1  T <- I - K H
-//! 2  for each column j of T: the pivot is the largest |T_jk|, k >= j; columns k > j lose their multiple of it, in T and in H
-//! 3  for each column j from the last: divide by T_jj, take its multiples from the columns before
+//! 2  for each row j of T: the column of the largest |T_jk|, k >= j, comes to place j, and the columns k > j lose that multiple of it
+//!       which makes their T_jk zero; the columns of H with those of T
+//! 3  for each column j from the last: divided by T_jj; the columns k < j lose T_jk times it
 //! ```
 //!
 //! Gaussian elimination with partial pivoting, on columns: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 3.4.

@@ -102,3 +102,34 @@ pub fn cyclic_inputs(on_axis: &PairTable<bool>, is_rate: impl Fn(usize) -> bool)
     let found: Vec<usize> = (0..on_axis.inputs()).filter(is_cyclic).collect();
     found.try_into().ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::dmatrix;
+
+    use super::*;
+
+    #[test]
+    fn the_cyclic_inputs_are_the_two_whose_only_axis_is_a_rate() {
+        // Outputs P, Q, R, NY; inputs LON, LAT, PED.
+        let axes = [(1, 0), (0, 1), (2, 2), (3, 2)];
+        let table = |axes: &[(usize, usize)]| {
+            PairTable::from_fn(4, 3, |Pair { output, input }| axes.contains(&(output, input)))
+        };
+        assert_eq!(cyclic_inputs(&table(&axes), |output| output < 3), Some([0, 1]));
+        assert_eq!(
+            cyclic_inputs(&table(&axes[..3]), |output| output < 3),
+            None,
+            "a pedal without an acceleration is a third"
+        );
+        assert_eq!(cyclic_inputs(&table(&axes), |output| output == 0), None);
+    }
+
+    #[test]
+    fn only_cyclic_inputs_have_a_swashplate_phase() {
+        let shares = mixing_shares(&dmatrix![1.0, -0.02, 0.03; 0.047, 1.0, 0.0; 0.0, 0.1, 1.0], Some([0, 1]));
+        assert_eq!((shares.len(), shares[0].to, shares[0].from, shares[0].swashplate_phase_deg), (6, 2, 1, None));
+        // M16.4: 4.7 % are 2.7 degrees.
+        assert!((shares[1].swashplate_phase_deg.unwrap() - 2.7).abs() < 0.05 && shares[1].share == 0.047);
+    }
+}

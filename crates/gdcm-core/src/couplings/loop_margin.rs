@@ -10,7 +10,7 @@ use crate::units::ratio_to_db;
 /// The least singular value of `I - K H` over some frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
-    /// The least: 1 of no feedback, 0 where the loop is unstable or about to be.
+    /// The least: 1 of no feedback, 0 where a pole of the closed loop is at `j omega`.
     pub least: f64,
     /// Where it is \[rad/s\].
     pub omega_rad_s: f64,
@@ -58,7 +58,8 @@ impl CouplingMatrices {
     }
 }
 
-/// `20 log10 |H~ - H| / |H|` of each response at the `k`-th frequency, p x m; none where one is not finite or `H` is zero.
+/// `20 log10 |H~ - H| / |H|` of each response at the `k`-th frequency, p x m; none where one is not finite or `H` is zero,
+/// minus infinity where nothing changes.
 pub fn relative_change_db(
     physics: &FrequencyResponse,
     coupled: &FrequencyResponse,

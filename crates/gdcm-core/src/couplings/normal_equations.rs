@@ -249,7 +249,8 @@ impl NormalEquations {
         if !residual.is_finite() || !coefficients.iter().all(|of| of.is_finite()) {
             return Err(singular());
         }
-        let cost = |theta: &DVector<f64>| (&self.gram * theta - 2.0 * &self.right).dot(theta) + self.target;
+        // Of two nearly equal sums less than nothing can be left.
+        let cost = |theta: &DVector<f64>| ((&self.gram * theta - 2.0 * &self.right).dot(theta) + self.target).max(0.0);
         let cost_ratio = cost(&coefficients) / cost(&uncoupled);
         let undetermined = (0..count).filter(|&place| !is_determined(place)).collect();
         Ok(PassOptimum { coefficients, residual, cost_ratio, undetermined })

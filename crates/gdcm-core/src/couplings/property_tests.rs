@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Complex, DMatrix, DVector, dmatrix};
+use nalgebra::{Complex, DMatrix, dmatrix};
 
-use super::known_answers_tests::{constant, made_up};
+use super::known_answers_tests::{constant, disturbed, fit};
 use super::*;
 use crate::correction::Pade;
 use crate::dataset::{Band, Dynamics, Pair, PairTable, StateSpace, Timing};
 use crate::executor::Sequential;
 use crate::progress::{Progress, Unobserved};
 use crate::response::{FrequencyGrid, FrequencyResponse};
-
-const NOT_KNOWN: Complex<f64> = Complex::new(f64::NAN, f64::NAN);
 
 /// A helicopter of four states, two inputs and three outputs with feed-through.
 fn small_aircraft() -> StateSpace {
@@ -42,14 +40,6 @@ fn pade() -> Pade {
 fn apart(one: &FrequencyResponse, other: &FrequencyResponse) -> f64 {
     let values = |of: &FrequencyResponse| of.curves().iter().flat_map(|(_, curve)| curve.clone()).collect::<Vec<_>>();
     values(one).iter().zip(values(other)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
-}
-
-fn fit(problem: &CouplingProblem) -> CouplingFit {
-    fit_couplings(problem, &Sequential, &Unobserved).unwrap()
-}
-
-fn disturbed() -> CouplingProblem {
-    made_up("R_disturbed", CouplingOptions::default())
 }
 
 #[test]
@@ -231,66 +221,6 @@ fn permuting_the_channels_permutes_the_answer() {
     // Sums in another order, five times.
     assert!((moved.matrices.mixing(70.0) - expected_m).amax() < 1e-12);
     assert!((moved.matrices.feedback() - expected_k).amax() < 1e-12);
-}
-
-#[test]
-fn an_output_that_flight_lacks_everywhere_is_not_fed_back_and_changes_nothing_else() {
-    let (mut lacking, mut smaller) = (disturbed(), disturbed());
-    for condition in &mut lacking.conditions {
-        let without = condition
-            .flight
-            .curves()
-            .map(|pair, curve| if pair.output == 2 { vec![NOT_KNOWN; curve.len()] } else { curve.clone() });
-        condition.flight = FrequencyResponse::new(without);
-    }
-    let first_two = |response: &FrequencyResponse| {
-        FrequencyResponse::new(PairTable::from_fn(2, 2, |pair| response.curve(pair).to_vec()))
-    };
-    smaller.on_axis = PairTable::from_fn(2, 2, |pair| smaller.on_axis[pair]);
-    for condition in &mut smaller.conditions {
-        condition.physics = Arc::new(first_two(&condition.physics));
-        condition.flight = first_two(&condition.flight);
-        condition.usable = PairTable::filled(2, 2, true);
-        let deviation = condition.deviation.take().unwrap();
-        condition.deviation = Some(PairTable::from_fn(2, 2, |pair| deviation[pair].clone()));
-    }
-    let (found, expected) = (fit(&lacking), fit(&smaller));
-    assert_eq!(found.not_fed_back, [2]);
-    assert!((found.matrices.mixing(70.0) - expected.matrices.mixing(70.0)).amax() < 1e-13);
-    assert!((found.matrices.feedback().columns(0, 2) - expected.matrices.feedback()).amax() < 1e-13);
-    assert!(found.matrices.feedback().column(2).iter().all(|entry| *entry == 0.0));
-}
-
-#[test]
-fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
-    let pair = Pair::new(2, 1);
-    let (mut lacking, mut unusable) = (disturbed(), disturbed());
-    // The first condition lacks one response; the same as if none of that input counted there.
-    let curves = lacking.conditions[0].flight.curves();
-    let without = curves.map(|at, curve| if at == pair { vec![NOT_KNOWN; curve.len()] } else { curve.clone() });
-    lacking.conditions[0].flight = FrequencyResponse::new(without);
-    for output in 0..3 {
-        unusable.conditions[0].usable[Pair::new(output, 1)] = false;
-    }
-    let (found, expected) = (fit(&lacking), fit(&unusable));
-    assert_eq!((found.coefficients, found.not_fed_back), (expected.coefficients, vec![]));
-}
-
-#[test]
-fn an_input_that_flight_never_moved_stays_as_it_is() {
-    let mut problem = disturbed();
-    for condition in &mut problem.conditions {
-        let without = condition
-            .flight
-            .curves()
-            .map(|pair, curve| if pair.input == 1 { vec![NOT_KNOWN; curve.len()] } else { curve.clone() });
-        condition.flight = FrequencyResponse::new(without);
-    }
-    let found = fit(&problem);
-    let of_input = |unknown: &&Unknown| matches!(unknown, Unknown::Mixing { from: 1, .. });
-    let expected: Vec<Unknown> = found.unknowns.iter().filter(of_input).copied().collect();
-    assert_eq!((&found.undetermined, found.not_fed_back.len()), (&expected, 0));
-    assert_eq!(found.matrices.mixing(70.0).column(1), DVector::from_vec(vec![0.0, 1.0]));
 }
 
 #[test]

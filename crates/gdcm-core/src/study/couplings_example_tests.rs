@@ -234,12 +234,10 @@ fn the_example_agrees(fit: &CouplingFit, name: &str) {
     for expected in list(&reference["conditions"]) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
         let found = analysis.condition(id).unwrap();
-        let mixing = fit.matrices.normalised_mixing(found.condition.flight_state().airspeed_kt);
-        let (of_m, of_k) = (&expected["M"], &expected["K"]);
-        let expected_mixing = matrix(of_m);
-        let normalised = DMatrix::from_fn(4, 4, |to, from| expected_mixing[(to, from)] / expected_mixing[(from, from)]);
-        assert_close("M", &row_by_row(&mixing), &row_by_row(&normalised), coefficient);
-        assert_close("K", &row_by_row(fit.matrices.feedback()), &row_by_row(&matrix(of_k)), coefficient);
+        let mixing = fit.matrices.mixing(found.condition.flight_state().airspeed_kt);
+        assert_close("M", &row_by_row(&mixing), &row_by_row(&matrix(&expected["M"])), coefficient);
+        let feedback = row_by_row(fit.matrices.feedback());
+        assert_close("K", &feedback, &row_by_row(&matrix(&expected["K"])), coefficient);
         let (at, signed_s) = (format!("condition {id}"), found.correction.signed_delays_s());
         assert_close(&at, &signed_s.outputs, &numbers(&expected["tau_out_s"]), tau_s);
         assert_close(&at, &signed_s.inputs, &numbers(&expected["tau_in_s"]), tau_s);
@@ -269,7 +267,8 @@ fn the_example_with_mixing_and_feedback_agrees() {
     the_example_agrees(&FEEDBACK, "feedback");
 }
 
-/// The embedded example, whose identified models are the program's own, against the figures of M16.4 and M16.5.
+/// The embedded example, whose identified models are the program's own: near the figures of M16.4 and M16.5, which are of other
+/// identified models (least singular values of 0.87 in the band and 0.96 above; two slow divergences more).
 #[test]
 fn the_embedded_example_reads_as_what_was_put_in() {
     let example = Example::of(include_bytes!("../../../../assets/example-dataset.json.gz"));

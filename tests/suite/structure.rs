@@ -21,6 +21,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("schedule", &["units", "whole_number", "dataset", "response", "fidelity", "correction"]),
     ("uncertainty", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),
     (
+        "couplings",
+        &["units", "executor", "progress", "dataset", "response", "fidelity", "correction", "schedule", "uncertainty"],
+    ),
+    (
         "study",
         &[
             "units",
@@ -35,6 +39,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "correction",
             "schedule",
             "uncertainty",
+            "couplings",
         ],
     ),
 ];

@@ -37,7 +37,7 @@
 //! J = 20 median(e_dB^2) + 20 * 0.0175 median(e_deg^2),                                            (eq. 14-19, M4)
 //! ```
 //!
-//! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M15 are
+//! and the gains of many conditions become one correction by regressing `ln k` on airspeed (M11). The numbers M1 to M16 are
 //! the sections of the method in docs/method.md.
 //!
 //! Where a delay cannot help, because the physics model lags, the channels get *signed* delays on wish, `tau >= 0` left out of
@@ -46,6 +46,13 @@
 //!
 //! ```text
 //! D_oi = sum W omega Delta phi / sum W omega^2,   L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2).   (M15)
+//! ```
+//!
+//! What no channel reaches, couplings and modes, a mixing `M~` of the inputs and a feedback `K` of outputs to inputs do, constant over
+//! all conditions and found by linear least squares; everything above then sees `H~` in place of `H`:
+//!
+//! ```text
+//! H~ = (I - H K)^-1 H M~,   R' = L_o^-1 R L_i^-1 = H (M + K R'),   M~ = M diag(M)^-1.                   (M16)
 //! ```
 //!
 //! # An example
@@ -82,6 +89,7 @@
 //! | `k_o`, `k_i` | `output_gains`, `input_gains` | channel gains \[-\] |
 //! | `tau_o`, `tau_i` | `output_delays_s`, `input_delays_s` | channel delays \[s\] |
 //! | `tau < 0`, `l`, `a`, `b` | `ChannelLeads`, `lead_s`, `zero_s`, `lag_s` | signed delays, lead time, time constants of a lead filter \[s\] |
+//! | `M~`, `K`, `H~` | `normalised_mixing`, `feedback`, `CouplingMatrices::response` | mixing, feedback, the physics model with both |
 //! | `LB`, `UB` | `Bounds` | bounds of the channels |
 //! | `alpha` | `alpha_gain`, `alpha_delay` | weight of the regularisation |
 //! | `J`, `Delta J` | `Cost`, `CostChange` | cost, its change; negative is better |
@@ -109,10 +117,12 @@
 //! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | how sure each number is, what the scatter over the conditions is made of |
+//! | [`couplings`] | mixing of inputs and feedback of outputs, fitted to all conditions at once (M16) |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each number came about |
 
 pub mod assembly;
 pub mod correction;
+pub mod couplings;
 pub mod dataset;
 pub mod executor;
 pub mod fidelity;

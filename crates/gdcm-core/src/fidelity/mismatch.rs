@@ -208,7 +208,7 @@ impl CoherenceWeights {
     }
 
     /// What stands at these frequencies in their places among `points` of the grid, not a number elsewhere.
-    pub(super) fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
+    pub(crate) fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
         let mut spread = vec![f64::NAN; points];
         self.places.iter().zip(values).for_each(|(&place, &value)| spread[place] = value);
         spread

@@ -24,7 +24,7 @@ impl FrequencyResponse {
     }
 
     /// Curves of `N` values each.
-    pub(super) fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
+    pub(crate) fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { curves }
     }
 

@@ -99,6 +99,14 @@ pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTa
     Some(response.coherence()?.map(|_, values| places.iter().map(|place| at(place, values)).collect()))
 }
 
+/// The values of one curve, at rising `known` frequencies, at each `omega` \[rad/s\]: linear on log omega, beyond the ends that of
+/// the end; there is at least one.
+pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
+    let (Some(&low), Some(&high)) = (known.first(), known.last()) else { return vec![f64::NAN; omega.len()] };
+    let at = |omega: &f64| Place::of(known, omega.clamp(low, high)).map_or(f64::NAN, |place| place.between(values));
+    omega.iter().map(at).collect()
+}
+
 /// Where a frequency lies between two measured ones: on `after`, or `fraction` of the way from the one before it.
 struct Place {
     after: usize,
@@ -133,6 +141,14 @@ impl Place {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn values_between_two_frequencies_are_on_a_line_over_their_logarithm_and_stay_beyond_the_ends() {
+        let found = interpolate_values(&[1.0, 4.0], &[10.0, 20.0], &[0.5, 1.0, 2.0, 4.0, 9.0]);
+        let miss = found.iter().zip([10.0, 10.0, 15.0, 20.0, 20.0]).map(|(found, expected)| (found - expected).abs());
+        assert!(miss.fold(0.0, f64::max) < 1e-14, "{found:?}");
+        assert!(interpolate_values(&[], &[], &[1.0])[0].is_nan());
+    }
 
     #[test]
     fn half_a_turn_is_kept_positive() {

@@ -57,3 +57,6 @@ pub use study::*;
 pub use substitutions::*;
 pub use table::*;
 pub use uncertainty::*;
+
+#[cfg(test)]
+mod couplings_example_tests;

@@ -203,7 +203,7 @@ impl Measurement {
     /// `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`: standard deviation of `ln |H|` and, in rad, of `arg H`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. (2010), section 9.
-    fn deviation(&self, coherence: f64) -> f64 {
+    pub fn deviation(&self, coherence: f64) -> f64 {
         self.factor * ((1.0 - coherence) / (coherence * 2.0 * self.averages)).sqrt()
     }
 

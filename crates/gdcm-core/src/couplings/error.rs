@@ -1,0 +1,79 @@
+//! Why no couplings can be found.
+
+use crate::dataset::ConditionId;
+use crate::progress::Cancelled;
+use crate::units::number;
+
+/// Why no couplings can be found (M16.2).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CouplingError {
+    /// There is no condition, or none has a response that both representatives have.
+    #[error("couplings: no response of the {conditions} conditions is known of both the physics model and flight")]
+    NothingToFit {
+        /// Number of conditions.
+        conditions: usize,
+    },
+    /// Too few conditions for what is asked.
+    #[error("couplings: error bars need at least {needed} conditions, and there are {found}")]
+    TooFewConditions {
+        /// How many it takes.
+        needed: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A condition's table has another shape than the others.
+    #[error(
+        "couplings: condition {condition}: expected {expected_outputs} x {expected_inputs} responses at {expected_points} \
+         frequencies in every table, found {outputs} x {inputs} at {points}"
+    )]
+    Shape {
+        /// The condition.
+        condition: ConditionId,
+        /// Outputs expected.
+        expected_outputs: usize,
+        /// Inputs expected.
+        expected_inputs: usize,
+        /// Frequencies expected.
+        expected_points: usize,
+        /// Outputs found.
+        outputs: usize,
+        /// Inputs found.
+        inputs: usize,
+        /// Frequencies found.
+        points: usize,
+    },
+    /// The loop of a pass cannot be closed: `I - K H` is singular.
+    #[error(
+        "couplings: the feedback makes the loop of condition {condition} singular at {} rad/s",
+        number(*omega_rad_s)
+    )]
+    SingularLoop {
+        /// The condition.
+        condition: ConditionId,
+        /// The frequency \[rad/s\].
+        omega_rad_s: f64,
+    },
+    /// The normal matrix has no Cholesky factors.
+    #[error("couplings: the responses do not tell the {unknowns} entries of the mixing and the feedback apart")]
+    SingularNormalMatrix {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// The mixing takes an input away or turns it around.
+    #[error(
+        "couplings: the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
+        number(*factor),
+        number(*airspeed_kt)
+    )]
+    ReversedInput {
+        /// The input, counted from 1.
+        input: usize,
+        /// The airspeed \[kt\].
+        airspeed_kt: f64,
+        /// `M_ii` there.
+        factor: f64,
+    },
+    /// The work was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}

@@ -1,0 +1,58 @@
+//! Couplings and modes that channels cannot reach (M16): one mixing of the inputs and one feedback of outputs to inputs, the same for
+//! all flight conditions, found by linear least squares.
+//!
+//! ```text
+//! y = H (u' + K y),  u' = M~ u,  so that  H~ = (I - H K)^-1 H M~
+//!
+//!  1  for each condition: R' <- L_o^-1 R L_i^-1, the flight response without the delays and leads of its channels
+//!  2  K <- 0, M <- I;  exactly R' = (I - H K)^-1 H M where R' = H (M + K R'), which is linear in M and K
+//!  3  repeat five times:
+//!  4     S <- (I - H K)^-1,  F <- S H,  H_c <- F M at each condition and frequency
+//!  5     q <- s w / max(|R'|, |H_c| / 2) / (1 + (e s / 10)^2)^(1/4) of each response, e^2 the summand of J
+//!  6     G, b <- normal matrix and right side of  sum q^2 |S R' - F M - F K R'|^2  in the entries theta of M and K
+//!  7     theta <- solution of  (G + rho diag G) theta = b + rho diag G theta_0,  theta_0: M = I, K = 0, by Cholesky's factors
+//!  8  M~(V) <- M(V) diag(M(V))^-1: the level stays with the channels
+//!  9  bars: theta again without each condition;  sd^2 <- (n - 1) / n sum (theta_(-c) - mean)^2,  Student's t of n - 1
+//! 10  H~, its state space, its poles, the least singular value of I - K H
+//! ```
+//!
+//! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
+//!
+//! Index order `[output, input]` of responses, `[to, from]` of `M` (input, input) and of `K` (input, output); omega in rad/s.
+
+mod channel_removal;
+mod closed_loop;
+mod coupled_model;
+mod coupling_matrices;
+mod coupling_size;
+mod error;
+mod fit;
+mod left_out_fits;
+mod loop_margin;
+mod normal_equations;
+mod pole_shift;
+mod problem;
+mod unknown;
+mod weighted_condition;
+
+pub use channel_removal::*;
+use closed_loop::*;
+pub use coupled_model::*;
+pub use coupling_matrices::*;
+pub use coupling_size::*;
+pub use error::*;
+pub use fit::*;
+pub use left_out_fits::*;
+pub use loop_margin::*;
+use normal_equations::*;
+pub use pole_shift::*;
+pub use problem::*;
+pub use unknown::*;
+use weighted_condition::*;
+
+#[cfg(test)]
+mod known_answers_tests;
+#[cfg(test)]
+mod missing_response_tests;
+#[cfg(test)]
+mod property_tests;

@@ -104,6 +104,7 @@ impl GdcmApp {
             Command::Explain(asked) => display.asked = asked,
             Command::ShowZeros(shown) => display.show_zeros = shown,
             Command::ShowBars(shown) => display.hide_bars = !shown,
+            Command::Overlay(variant) => display.overlaid = variant,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
             Command::ShowAcross(role) => {
                 display.across_role = role;

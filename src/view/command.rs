@@ -73,6 +73,8 @@ pub enum Command {
     ShowZeros(bool),
     /// Show error bars and bands in the plots of gains, or not.
     ShowBars(bool),
+    /// Lay a variant over the present decisions in Bode and Net gain, or none.
+    Overlay(Option<String>),
     /// Show the evidence for the schedule beside the net gains, or not.
     ShowEvidence(bool),
     /// Lay other models of the conditions over one another.

@@ -97,6 +97,8 @@ pub struct Display {
     pub across_shapes: AirspeedCache,
     /// The name that the present decisions are to be kept under, as typed.
     pub variant_name: String,
+    /// The variant whose corrected model and net gains are laid over those shown, by its name.
+    pub overlaid: Option<String>,
     /// Orders of the tables of the comparison: what differs, and what it does.
     pub compare_sorting: [Sorting; 2],
     /// Cells of the overview.

@@ -443,7 +443,8 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
 }
 
 /// The roles that are named where they end.
-const NAMED: [Role; 4] = [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Nominal];
+const NAMED: [Role; 5] =
+    [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Variant, Role::Nominal];
 /// Least distance between two names \[pt\].
 const NAME_GAP: f32 = 14.0;
 

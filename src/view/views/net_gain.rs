@@ -4,11 +4,12 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::setting;
-use gdcm_files::figure::{Across, GainQuantity, MarkId, net_gain_figure, quieten, schedule_words};
+use gdcm_files::figure::{Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words};
 use serde::{Deserialize, Serialize};
 
 use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
+use super::compare::overlaid_analysis;
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
 use crate::view::controls::{named, toggle_ui};
@@ -220,11 +221,14 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let pairs = if state.analysis().is_some() { net_gain_pairs(state) } else { Vec::new() };
     let figure = state.analysis().map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
     let mut figure = figure.unwrap_or_default();
+    let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::net_gain).collect();
+    if let Some((name, analysis)) = overlaid_analysis(state) {
+        add_variant(&mut figure, &quantities, analysis, name);
+    }
     for (plot, pair) in
         figure.plots.iter_mut().zip(&pairs).filter(|(_, pair)| !state.study.settings.constrained[**pair])
     {
         plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
     }
-    let quantities = pairs.into_iter().map(GainQuantity::net_gain).collect();
     GainPlots { state, figure: figure.with_ranges(), quantities, across: Across::Airspeed }
 }

@@ -7,7 +7,7 @@ use gdcm::view::views::poles;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm_core::correction::Channel;
-use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
+use gdcm_core::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 use gdcm_files::figure::{DotShape, Mark, Panel};
 
 use super::*;
@@ -286,6 +286,40 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     assert_eq!(state(&window).study, kept);
     give(&mut window, Action::Undo);
     assert_eq!(state(&window).study, before);
+}
+
+#[test]
+fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
+    let mut window = window();
+    give(&mut window, Edit::KeepVariant { name: "as it was".to_owned() });
+    click(&mut window, "Hold LON → Q");
+    show(&mut window, View::Compare);
+    click(&mut window, "Overlay variant as it was");
+    show(&mut window, View::Bode);
+    let lon_q = pair(&window, "Q", "LON");
+    give(&mut window, Action::FocusPair(lon_q));
+    let of = |window: &Window, role: CurveRole| {
+        let drawn = &state(window).display.drawn;
+        drawn.iter().find(|curve| curve.role == role).map(|curve| curve.magnitude_db[0])
+    };
+    wait_until(&mut window, "the variant's curve", |window| of(window, CurveRole::Variant).is_some());
+    let condition = state(&window).condition().id();
+    let held = |analysis: &Analysis| analysis.condition(condition).unwrap().correction.net_gain(lon_q);
+    let (_, variant) = &state(&window).results.variants[0];
+    let ratio_db = 20.0 * (held(variant) / held(state(&window).analysis().unwrap())).log10();
+    let drawn_db = of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
+    assert!(ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9, "{drawn_db} dB drawn, {ratio_db} dB");
+    let has_key = |window: &Window| {
+        let figure = gdcm::view::views::net_gain_plots(state(window)).figure;
+        figure.plots[0].panels[0]
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
+    };
+    assert!(has_key(&window));
+    show(&mut window, View::Compare);
+    click(&mut window, "Overlay variant as it was");
+    assert!(!has_key(&window) && state(&window).display.overlaid.is_none());
 }
 
 #[test]

@@ -37,6 +37,8 @@ pub enum Command {
     FocusPair(Pair),
     /// Point at a model in every view, as long as this is asked for in each frame.
     Hover(ModelId),
+    /// Point at a condition; for this frame.
+    HoverCondition(ConditionId),
     /// Show only this model beside the representatives; the same model again shows all.
     Isolate(ModelId),
     /// Bring a plot to the front.

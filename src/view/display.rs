@@ -27,6 +27,8 @@ pub struct Display {
     pub pair: Pair,
     /// The model pointed at.
     pub hovered: Option<ModelId>,
+    /// The condition that is pointed at, in the list or as a dot.
+    pub hovered_condition: Option<ConditionId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
     /// The value whose derivation is shown.

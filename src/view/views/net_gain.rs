@@ -12,7 +12,7 @@ use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::compare::overlaid_analysis;
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
-use crate::view::controls::{named, toggle_ui};
+use crate::view::controls::{named, restore_panel_size, toggle_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::settings_panel::{choice_ui, setting_ui};
@@ -93,6 +93,7 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     };
     if state.display.show_evidence {
         let width = ui.available_width();
+        restore_panel_size(ui, "evidence");
         let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }

@@ -323,6 +323,42 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
 }
 
 #[test]
+fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
+    let mut window = window();
+    let row = window.get_by_label_contains("Condition 3: ").rect();
+    window.hover_at(row.left_center() + vec2(30.0, 0.0));
+    window.run_steps(3);
+    assert_eq!(state(&window).display.hovered_condition, Some(ConditionId(3)));
+    window.hover_at(pos2(800.0, 5.0));
+    window.run_steps(3);
+    assert_eq!(state(&window).display.hovered_condition, None);
+}
+
+#[test]
+fn a_double_click_on_its_edge_puts_a_panel_back() {
+    let mut window = window();
+    let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
+    let (before, y) = (edge(&window), 500.0);
+    // The edge of the answer panel, some points left of what it holds.
+    let at = pos2((1600.0_f32 - 352.0).round(), y);
+    window.drag_at(at);
+    window.run_steps(2);
+    window.hover_at(at - vec2(60.0, 0.0));
+    window.run_steps(2);
+    window.drop_at(at - vec2(60.0, 0.0));
+    settle(&mut window);
+    assert!((before - edge(&window) - 60.0).abs() < 4.0, "{before} {}", edge(&window));
+    for _ in 0..2 {
+        window.drag_at(at - vec2(60.0, 0.0));
+        window.run_steps(1);
+        window.drop_at(at - vec2(60.0, 0.0));
+        window.run_steps(1);
+    }
+    settle(&mut window);
+    assert!((before - edge(&window)).abs() < 1.0, "{before} {}", edge(&window));
+}
+
+#[test]
 fn a_figure_says_how_it_was_computed_and_follows_the_results() {
     let mut window = window();
     let condition = state(&window).condition().id();

@@ -6,6 +6,7 @@ use egui::{
     WidgetInfo, pos2, vec2,
 };
 
+use super::focus::begin_with;
 use super::palette::medium;
 use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, TableKind};
 
@@ -120,6 +121,9 @@ pub fn row_of_height_ui(
 ) -> (Rect, Response) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, ui.is_enabled(), selected, name));
+    if selected {
+        begin_with(ui.ctx(), response.id);
+    }
     let fill = if selected {
         palette.selected
     } else if response.hovered() || pointed || response.has_focus() {

@@ -86,7 +86,11 @@ fn legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
         ui.spacing_mut().item_spacing = vec2(12.0, 0.0);
         for entry in figure.legend() {
             let Sample::Dot { shape, color, .. } = entry.sample else { continue };
-            let mark = if shape == DotShape::Cross { "×" } else { "○" };
+            let mark = match shape {
+                DotShape::Cross => "×",
+                DotShape::Plus => "+",
+                _ => "○",
+            };
             let words = RichText::new(format!("{mark} {}", entry.text)).size(SMALL_SIZE);
             ui.label(words.color(palette.name_of(palette.color(color))));
         }

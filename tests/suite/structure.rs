@@ -21,6 +21,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("schedule", &["units", "whole_number", "dataset", "response", "fidelity", "correction"]),
     ("uncertainty", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),
     (
+        "requirements",
+        &["units", "message_text", "dataset", "assembly", "response", "fidelity", "identification", "uncertainty"],
+    ),
+    (
         "study",
         &[
             "units",

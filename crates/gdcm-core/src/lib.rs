@@ -109,6 +109,7 @@
 //! | [`correction`] | G, D, bounds, gains, delays, leads, and what they do to a response |
 //! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | how sure each number is, what the scatter over the conditions is made of |
+//! | [`requirements`] | what a qualification asks of a model: bandwidth, time histories, modes, summary costs (M17) |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each number came about |
 
 pub mod assembly;
@@ -120,6 +121,7 @@ pub mod identification;
 pub mod message_text;
 pub mod progress;
 pub mod records;
+pub mod requirements;
 pub mod response;
 pub mod schedule;
 pub mod study;

@@ -1,0 +1,23 @@
+//! What a qualification asks of a model (M17): bandwidth and phase delay, time histories within tolerances, modes, summary costs.
+//!
+//! J says how far two models are apart; whoever accepts a simulator or a flight control law asks other questions. Each is answered
+//! of one model here; nothing of it changes a correction. Times in s, frequencies in rad/s, angles inside in rad. A response is taken
+//! exactly (models) or interpolated inside its frequencies (measured); nothing is extrapolated.
+//!
+//! | file | answers | standard |
+//! |---|---|---|
+//! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+
+mod attitude_response;
+mod bandwidth;
+mod bandwidth_deviation;
+#[cfg(test)]
+mod bandwidth_tests;
+#[cfg(test)]
+mod known_answers_tests;
+mod level_boundary;
+
+pub use attitude_response::*;
+pub use bandwidth::*;
+pub use bandwidth_deviation::*;
+pub use level_boundary::*;

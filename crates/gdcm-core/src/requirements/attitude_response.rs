@@ -98,18 +98,21 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 
 /// `Theta(j omega)`: magnitude and continuous phase on a grid, and between.
 ///
-/// Of a rate response H it is `H / (j omega)`. The phase is unwrapped from the lowest frequency, where it lies in (-270, 90] deg.
+/// Of a rate response H it is `H / (j omega)`. The phase is continuous, and lies in (-270, 90] deg at the lowest frequency of the band:
+/// below it, where no records say anything, slow and unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     omega: Vec<f64>,
     magnitude_db: Vec<f64>,
     phase: Vec<f64>,
+    lowest_of_band: usize,
 }
 
 impl<'a> AttitudeResponse<'a> {
     /// The attitude that `response` makes of an output, searched on the rising frequencies `omega` \[rad/s\]: [`search_frequencies`]
-    /// of a model, its own frequencies of a measured response. It ends where the response first has no value.
+    /// of a model, its own frequencies of a measured response. It ends where the response first has no value. The branch of the
+    /// phase is decided at the first of them in `band`.
     ///
     /// # Errors
     /// [`AttitudeResponseError::NoResponse`] where no two neighbouring frequencies have a value.
@@ -117,6 +120,7 @@ impl<'a> AttitudeResponse<'a> {
         response: &'a ResponseAt<'a>,
         output: AttitudeOutput,
         omega: &[f64],
+        band: Band,
     ) -> Result<Self, AttitudeResponseError> {
         let polar: Vec<Option<(f64, f64)>> = polar(response, output, omega);
         let from = polar.iter().position(Option::is_some).unwrap_or(omega.len());
@@ -126,10 +130,27 @@ impl<'a> AttitudeResponse<'a> {
             return Err(AttitudeResponseError::NoResponse { from: end(omega.first()), to: end(omega.last()) });
         }
         let (magnitude_db, mut phase): (Vec<f64>, Vec<f64>) = run.into_iter().unzip();
-        phase[0] = if phase[0] > FRAC_PI_2 { phase[0] - TAU } else { phase[0] };
         unwrap(&mut phase);
         let omega = omega[from..from + phase.len()].to_vec();
-        Ok(Self { response, output, omega, magnitude_db, phase })
+        let lowest_of_band = omega.partition_point(|omega| *omega < band.min()).min(omega.len() - 1);
+        let principal = wrap(phase[lowest_of_band]);
+        let on_branch = if principal > FRAC_PI_2 { principal - TAU } else { principal };
+        let turns = on_branch - phase[lowest_of_band];
+        phase.iter_mut().for_each(|phase| *phase += turns);
+        Ok(Self { response, output, omega, magnitude_db, phase, lowest_of_band })
+    }
+
+    /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
+    pub(super) fn lowest_of_band(&self) -> usize {
+        self.lowest_of_band
+    }
+
+    /// The phase \[deg\] at the lowest frequency of the band where it speaks for a stick or an output that counts the other way round:
+    /// within 45 deg of +90 deg, where an attitude that follows its stick has 0 to -90 deg. Bandwidths are then wrong.
+    pub fn reversed_phase_deg(&self) -> Option<f64> {
+        let phase_deg = self.phase[self.lowest_of_band].to_degrees();
+        let is_reversed = phase_deg > 45.0 || phase_deg < -225.0;
+        is_reversed.then_some(phase_deg)
     }
 
     /// The frequencies \[rad/s\] of the grid at which it is known, rising; at least two.

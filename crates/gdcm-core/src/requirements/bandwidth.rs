@@ -1,8 +1,9 @@
 //! Bandwidth and phase delay of an attitude response (M17.1).
 //!
 //! ```text
-//! 1  Theta = H/(j omega) of a rate, H of an attitude; phase unwrapped from the lowest frequency, there in (-270, 90] deg
-//! 2  omega_180, omega_phase: the lowest omega at which it falls through -180, -135 deg, by bisection
+//! 1  Theta = H/(j omega) of a rate, H of an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
+//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg, by bisection;
+//!    where it is below that at the band's lowest frequency, the next one below
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
 //! 4  omega_BW = min(omega_phase, omega_gain) of a rate response; omega_phase of attitude command
 //! 5  Phi at 400 logarithmic points of omega_180 ... 2 omega_180; its largest departure from the line between its ends
@@ -92,12 +93,12 @@ pub enum NoMetric {
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
-    /// The phase is below the level from the lowest frequency on.
-    #[error("no crossing of {} deg: the phase is below it from {} rad/s on", number(*level_deg), number(*from))]
+    /// The phase is below the level at the lowest frequency of the band, and falls through it nowhere below.
+    #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
     BelowFromStart {
         /// The phase that is asked for \[deg\].
         level_deg: f64,
-        /// Lowest frequency searched \[rad/s\].
+        /// Lowest frequency of the band \[rad/s\].
         from: f64,
     },
     /// Nowhere below `omega_180` is the magnitude 6 dB above that at `omega_180`.
@@ -230,13 +231,14 @@ impl Reading<'_> {
     fn phase_crossing(&self, level_deg: f64) -> Result<Metric, NoMetric> {
         let (omega, phase, level) = (self.attitude.omega(), self.attitude.phase(), level_deg.to_radians());
         let falls = |k: &usize| phase[*k] > level && phase[k + 1] <= level;
-        let Some(k) = (0..phase.len() - 1).find(falls) else {
-            let [from, up_to] = self.attitude.range();
-            let is_below = phase[0] <= level;
+        let (first, last) = (self.attitude.lowest_of_band(), phase.len() - 1);
+        let is_below = phase[first] <= level;
+        let below = || (0..first).rev().find(falls).filter(|_| is_below);
+        let Some(k) = (first..last).find(falls).or_else(below) else {
             return Err(if is_below {
-                NoMetric::BelowFromStart { level_deg, from }
+                NoMetric::BelowFromStart { level_deg, from: omega[first] }
             } else {
-                NoMetric::NoCrossing { level_deg, up_to }
+                NoMetric::NoCrossing { level_deg, up_to: omega[last] }
             });
         };
         let root = bisect([omega[k], omega[k + 1]], |omega| self.attitude.phase_at(omega).map(|phase| level - phase));

@@ -26,7 +26,11 @@ fn of_attitude(attitude: impl Fn(Complex<f64>) -> Complex<f64>, settings: &Bandw
         omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * attitude(s)).collect()
     };
     let frequencies = search_frequencies(settings.band);
-    Bandwidth::of(&AttitudeResponse::new(&rate, AttitudeOutput::Rate, &frequencies).unwrap(), settings, None)
+    Bandwidth::of(
+        &AttitudeResponse::new(&rate, AttitudeOutput::Rate, &frequencies, settings.band).unwrap(),
+        settings,
+        None,
+    )
 }
 
 fn value(metric: Result<Metric, NoMetric>) -> f64 {
@@ -93,7 +97,7 @@ fn an_attitude_is_taken_as_it_is_and_a_rate_over_s() {
 
     let [attitude, ..] = attitudes();
     let at = |omega: &[f64]| omega.iter().map(|omega| attitude(Complex::new(0.0, *omega))).collect();
-    let response = AttitudeResponse::new(&at, AttitudeOutput::Attitude, &search_frequencies(band())).unwrap();
+    let response = AttitudeResponse::new(&at, AttitudeOutput::Attitude, &search_frequencies(band()), band()).unwrap();
     let found = Bandwidth::of(&response, &settings(CommandType::Rate), None);
     assert!(
         (value(found.omega_bw) - value(of_attitude(attitude, &settings(CommandType::Rate)).omega_bw)).abs() < 1e-10
@@ -107,12 +111,42 @@ fn a_phase_that_never_falls_through_has_no_crossing_and_says_up_to_where() {
     assert_eq!((found.phase_delay_s.is_err(), found.omega_gain.is_err(), found.phase_line), (true, true, None));
     assert!((value(found.omega_bw) - 1.0).abs() < 1e-10, "45 deg of margin at the pole");
     assert_eq!(found.rule, Some(BandwidthRule::PhaseGainUnknown));
-    let late = of_attitude(|s| (-9.0 * s).exp() / (s * s), &settings(CommandType::Rate));
+    let late = of_attitude(|s| (-0.05 * s).exp() / (s * s), &settings(CommandType::Rate));
     assert_eq!(
         late.omega_phase.unwrap_err().to_string(),
-        "no crossing of -135 deg: the phase is below it from 0.125 rad/s on"
+        "no crossing of -135 deg: the phase is below it from 0.500 rad/s on"
     );
     assert_eq!((late.omega_bw.is_err(), late.rule), (true, None));
+}
+
+#[test]
+fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
+    // An unstable phugoid of 0.2 rad/s turns the phase by a turn below the band, and a pair of zeros near it back.
+    let [.., short] = attitudes();
+    let turned = |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
+    let rate = settings(CommandType::Rate);
+    let (plain, found) = (of_attitude(short, &rate), of_attitude(turned, &rate));
+    assert!((value(found.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
+    assert!((value(found.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
+    // A phase that dips through -135 deg below the band only has its crossing within.
+    let dips = |s: Complex<f64>| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225);
+    assert!(value(of_attitude(dips, &settings(CommandType::Rate)).omega_phase) > 1.9);
+    // A slow aircraft crosses below the band and stays there.
+    let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
+    let omega_phase = slow.omega_phase.unwrap();
+    assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
+}
+
+#[test]
+fn a_stick_that_counts_the_other_way_round_is_suspected() {
+    let [.., short] = attitudes();
+    let phase_deg = |sign: f64| {
+        let at = |omega: &[f64]| omega.iter().map(|omega| sign * short(Complex::new(0.0, *omega))).collect();
+        let response = AttitudeResponse::new(&at, AttitudeOutput::Attitude, &search_frequencies(band()), band());
+        response.unwrap().reversed_phase_deg()
+    };
+    assert_eq!(phase_deg(1.0), None);
+    assert!((phase_deg(-1.0).unwrap() - 79.0).abs() < 2.0);
 }
 
 #[test]
@@ -157,7 +191,7 @@ fn a_measurement_is_never_extrapolated() {
             |part: fn(&Complex<f64>) -> f64| PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>());
         let measured = MeasuredResponse::new(omega, &table(|value| value.re), &table(|value| value.im), None).unwrap();
         let at = measured_response(&measured, ONLY);
-        let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, measured.omega()).unwrap();
+        let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, measured.omega(), band()).unwrap();
         Bandwidth::of(&response, &settings(CommandType::Rate), None)
     };
     // omega_180 is 3.79 rad/s.
@@ -176,9 +210,10 @@ fn a_measurement_is_never_extrapolated() {
 #[test]
 fn a_response_that_is_nowhere_is_refused() {
     let nothing = |omega: &[f64]| vec![Complex::new(0.0, 0.0); omega.len()];
-    let refused = AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &search_frequencies(band())).err().unwrap();
+    let refused =
+        AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &search_frequencies(band()), band()).err().unwrap();
     assert_eq!(refused.to_string(), "there is no response between 0.125 and 48 rad/s");
-    assert!(AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &[]).is_err());
+    assert!(AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &[], band()).is_err());
 }
 
 #[test]
@@ -188,7 +223,7 @@ fn a_model_and_its_correction_are_taken_exactly() {
     let timing = Timing { input_delays_s: Some(vec![0.02]), ..Timing::default() };
     let model = PreparedModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()));
     let at = model_response(&model, ONLY, GainDelay::new(1.7, 0.04));
-    let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band())).unwrap();
+    let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
     let found = Bandwidth::of(&response, &settings(CommandType::Rate), None);
     let expected = of_attitude(|s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)), &settings(CommandType::Rate));
     for (found, expected) in [
@@ -219,7 +254,7 @@ fn deviations_are_those_of_moving_the_response() {
     };
     let of = |turn_deg: f64, bands: &ModelBands| {
         let at = rate(turn_deg);
-        let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band())).unwrap();
+        let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
         Bandwidth::of(&response, &settings(CommandType::Rate), Some(&PairBand { bands, pair: ONLY }))
     };
     let phase_only = bands(0.0, sd_deg);
@@ -249,7 +284,7 @@ fn a_band_that_ends_before_a_crossing_gives_no_deviation_there() {
     let rate = |omega: &[f64]| -> Vec<Complex<f64>> {
         omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * short(s)).collect()
     };
-    let response = AttitudeResponse::new(&rate, AttitudeOutput::Rate, &search_frequencies(band())).unwrap();
+    let response = AttitudeResponse::new(&rate, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
     let found = Bandwidth::of(&response, &settings(CommandType::Rate), Some(&PairBand { bands: &bands, pair: ONLY }));
     assert!(found.omega_180.unwrap().deviation.is_some() && found.phase_delay_s.unwrap().deviation.is_none());
 }

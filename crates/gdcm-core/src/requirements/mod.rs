@@ -7,6 +7,7 @@
 //! | file | answers | standard |
 //! |---|---|---|
 //! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+//! | `tolerance`, `tolerance_check` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 mod attitude_response;
 mod bandwidth;
@@ -16,8 +17,16 @@ mod bandwidth_tests;
 #[cfg(test)]
 mod known_answers_tests;
 mod level_boundary;
+mod test_input;
+mod tolerance;
+mod tolerance_check;
+#[cfg(test)]
+mod tolerance_tests;
 
 pub use attitude_response::*;
 pub use bandwidth::*;
 pub use bandwidth_deviation::*;
 pub use level_boundary::*;
+pub use test_input::*;
+pub use tolerance::*;
+pub use tolerance_check::*;

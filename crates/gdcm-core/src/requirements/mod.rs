@@ -7,6 +7,7 @@
 //! | file | answers | standard |
 //! |---|---|---|
 //! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
+//! | `mode_comparison`, `mode_tolerance`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
 //! | `tolerance`, `tolerance_check` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 mod attitude_response;
@@ -17,6 +18,11 @@ mod bandwidth_tests;
 #[cfg(test)]
 mod known_answers_tests;
 mod level_boundary;
+mod mode_comparison;
+mod mode_name;
+#[cfg(test)]
+mod mode_tests;
+mod mode_tolerance;
 mod test_input;
 mod tolerance;
 mod tolerance_check;
@@ -27,6 +33,9 @@ pub use attitude_response::*;
 pub use bandwidth::*;
 pub use bandwidth_deviation::*;
 pub use level_boundary::*;
+pub use mode_comparison::*;
+pub use mode_name::*;
+pub use mode_tolerance::*;
 pub use test_input::*;
 pub use tolerance::*;
 pub use tolerance_check::*;

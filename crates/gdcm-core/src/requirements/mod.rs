@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
 //! | `mode_comparison`, `mode_tolerance`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
+//! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
 //! | `tolerance`, `tolerance_check` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
 mod attitude_response;
@@ -23,6 +24,7 @@ mod mode_name;
 #[cfg(test)]
 mod mode_tests;
 mod mode_tolerance;
+mod summary;
 mod test_input;
 mod tolerance;
 mod tolerance_check;
@@ -36,6 +38,7 @@ pub use level_boundary::*;
 pub use mode_comparison::*;
 pub use mode_name::*;
 pub use mode_tolerance::*;
+pub use summary::*;
 pub use test_input::*;
 pub use tolerance::*;
 pub use tolerance_check::*;

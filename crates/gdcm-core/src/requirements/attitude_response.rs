@@ -149,7 +149,7 @@ impl<'a> AttitudeResponse<'a> {
     /// within 45 deg of +90 deg, where an attitude that follows its stick has 0 to -90 deg. Bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
-        let is_reversed = phase_deg > 45.0 || phase_deg < -225.0;
+        let is_reversed = !(-225.0..=45.0).contains(&phase_deg);
         is_reversed.then_some(phase_deg)
     }
 

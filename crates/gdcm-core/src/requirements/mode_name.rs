@@ -3,7 +3,7 @@
 //! ```text
 //! where states are named: sum the participations of states of a kind
 //!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
-//!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   oscillation: u, theta more than w, q: phugoid, else short period
+//!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
 //!                                                                  real: q more than w: pitch subsidence, else heave
 //!    v, p, r, phi, psi, over 0.3:                                  oscillation: Dutch roll
 //!                                                                  real: p most: roll subsidence; else, below 1 rad/s: spiral
@@ -114,15 +114,14 @@ impl StateKind {
 }
 
 impl ModeName {
-    /// The name of a mode: by the states that take part where `states` names them all and participations are known, else by
-    /// frequency and damping. None where neither says it.
+    /// The name of a mode of a model: by the states that take part where `states` names them, else by frequency and damping. None
+    /// where that does not say it, or a pole cannot be told from another of named states: actuators of one make are such.
     pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
-        match &mode.participation {
-            Ok(shares) if !states.is_empty() && shares.len() == states.len() => {
-                (Self::by_states(mode, shares, states), NamedBy::States)
-            }
-            _ => (Self::by_frequency(mode), NamedBy::Frequency),
+        if states.is_empty() {
+            return (Self::by_frequency(mode), NamedBy::Frequency);
         }
+        let shares = mode.participation.as_deref().unwrap_or_default();
+        (Self::by_states(mode, shares, states), NamedBy::States)
     }
 
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
@@ -142,7 +141,8 @@ impl ModeName {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
-            (true, true) if share(&[Surge, Pitch]) > share(&[Heave, PitchRate]) => Some(Self::Phugoid),
+            // Of two real poles too, into which the oscillation can split.
+            (true, _) if share(&[Surge, Pitch]) > share(&[Heave, PitchRate]) => Some(Self::Phugoid),
             (true, true) => Some(Self::ShortPeriod),
             (true, false) if share(&[PitchRate]) > share(&[Heave]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
@@ -204,6 +204,9 @@ mod tests {
     fn states_of_actuators_leave_a_mode_without_a_name() {
         let pair = || dmatrix![-16.0, 14.0; -14.0, -16.0];
         assert_eq!(named(pair(), &["act_lon", "act_lon_dot"])[0], (None, NamedBy::States));
+        // Two of one make cannot be told apart; their frequency says nothing where their states are known.
+        let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
+        assert_eq!(named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0], (None, NamedBy::States));
         assert_eq!(named(pair() * 0.4, &["b1s", "p"])[0].0, Some(ModeName::RegressingFlap));
         assert_eq!(named(pair() * 0.1, &["v", "r"])[0].0, Some(ModeName::DutchRoll));
         assert_eq!(named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0, Some(ModeName::RegressingFlap));
@@ -226,7 +229,5 @@ mod tests {
         ] {
             assert_eq!(named(a.clone(), &[])[0], (name, NamedBy::Frequency), "{a}");
         }
-        // As many names as there are states, or none.
-        assert_eq!(named(pair(-0.4, 2.0), &["v"])[0].1, NamedBy::Frequency);
     }
 }

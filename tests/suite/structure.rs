@@ -22,7 +22,17 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("uncertainty", &["units", "dataset", "response", "fidelity", "correction", "schedule"]),
     (
         "requirements",
-        &["units", "message_text", "dataset", "assembly", "response", "fidelity", "identification", "uncertainty"],
+        &[
+            "units",
+            "message_text",
+            "executor",
+            "dataset",
+            "assembly",
+            "response",
+            "fidelity",
+            "identification",
+            "uncertainty",
+        ],
     ),
     (
         "study",

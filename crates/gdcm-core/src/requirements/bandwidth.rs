@@ -17,9 +17,12 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::{AttitudeResponse, ResponseDeviation};
-use crate::dataset::Band;
-use crate::response::log_spaced;
+use super::{
+    AttitudeOutput, AttitudeResponse, AttitudeResponseError, PairBand, ResponseDeviation, measured_response,
+    model_response, search_frequencies,
+};
+use crate::dataset::{Band, Channel, MeasuredResponse, ModelBands, Pair};
+use crate::response::{GainDelay, PreparedModel, log_spaced};
 use crate::units::number;
 
 /// Relative width of the bracket of a crossing at which bisection ends.
@@ -200,6 +203,37 @@ impl Bandwidth {
             phase_delay_s: phase_delay.map(|(metric, _)| metric),
             phase_line: phase_delay.ok().map(|(_, line)| line),
         }
+    }
+
+    /// Of one response of a model under `correction` ([`GainDelay::NONE`] as it is), exact; `bands` are those of the model.
+    ///
+    /// # Errors
+    /// [`AttitudeResponseError`] where the output is neither a rate nor an attitude, or the response is nowhere defined.
+    pub fn of_model(
+        model: &PreparedModel,
+        (pair, output): (Pair, &Channel),
+        correction: GainDelay,
+        settings: &BandwidthSettings,
+        bands: Option<&ModelBands>,
+    ) -> Result<Self, AttitudeResponseError> {
+        let (response, frequencies) = (model_response(model, pair, correction), search_frequencies(settings.band));
+        let attitude = AttitudeResponse::new(&response, AttitudeOutput::of(output)?, &frequencies, settings.band)?;
+        let deviation = bands.map(|bands| PairBand { bands, pair });
+        Ok(Self::of(&attitude, settings, deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation)))
+    }
+
+    /// Of one measured response, interpolated inside its frequencies; the band of `settings` is where it is trusted.
+    ///
+    /// # Errors
+    /// As [`Bandwidth::of_model`].
+    pub fn of_measured(
+        measured: &MeasuredResponse,
+        (pair, output): (Pair, &Channel),
+        settings: &BandwidthSettings,
+    ) -> Result<Self, AttitudeResponseError> {
+        let response = measured_response(measured, pair);
+        let attitude = AttitudeResponse::new(&response, AttitudeOutput::of(output)?, measured.omega(), settings.band)?;
+        Ok(Self::of(&attitude, settings, None))
     }
 
     /// Whether the gain margin comes before the phase margin: the standard warns of it, whatever the bandwidth is.

@@ -12,6 +12,10 @@ use crate::response::{GainDelay, PreparedModel, log_spaced};
 
 const ONLY: Pair = Pair { output: 0, input: 0 };
 
+fn roll_rate() -> Channel {
+    Channel::new("P", "deg/s")
+}
+
 fn band() -> Band {
     Band::new(0.5, 12.0).unwrap()
 }
@@ -190,16 +194,13 @@ fn a_measurement_is_never_extrapolated() {
         let table =
             |part: fn(&Complex<f64>) -> f64| PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>());
         let measured = MeasuredResponse::new(omega, &table(|value| value.re), &table(|value| value.im), None).unwrap();
-        let at = measured_response(&measured, ONLY);
-        let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, measured.omega(), band()).unwrap();
-        Bandwidth::of(&response, &settings(CommandType::Rate), None)
+        Bandwidth::of_measured(&measured, (ONLY, &roll_rate()), &settings(CommandType::Rate)).unwrap()
     };
     // omega_180 is 3.79 rad/s.
     let whole = found(12.0);
     assert!((value(whole.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3, "as far as 60 points tell it");
     assert!((value(whole.phase_delay_s) / 0.12206651443391653 - 1.0).abs() < 1e-2);
     let part = found(6.0);
-    assert_eq!(part.omega_180.unwrap().value, part.phase_delay_s.map_or(part.omega_180.unwrap().value, |_| 0.0));
     let words = part.phase_delay_s.unwrap_err().to_string();
     assert!(words.starts_with("the response has no value at 7.5"), "{words}");
     let less = found(3.0);
@@ -222,9 +223,11 @@ fn a_model_and_its_correction_are_taken_exactly() {
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let timing = Timing { input_delays_s: Some(vec![0.02]), ..Timing::default() };
     let model = PreparedModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()));
-    let at = model_response(&model, ONLY, GainDelay::new(1.7, 0.04));
-    let response = AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
-    let found = Bandwidth::of(&response, &settings(CommandType::Rate), None);
+    let of = |output: &Channel| {
+        Bandwidth::of_model(&model, (ONLY, output), GainDelay::new(1.7, 0.04), &settings(CommandType::Rate), None)
+    };
+    let found = of(&roll_rate()).unwrap();
+    assert!(of(&Channel::new("NZ", "g")).unwrap_err().to_string().contains("has no bandwidth"));
     let expected = of_attitude(|s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)), &settings(CommandType::Rate));
     for (found, expected) in [
         (found.omega_bw, expected.omega_bw),

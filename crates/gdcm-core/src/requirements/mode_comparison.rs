@@ -17,7 +17,7 @@ use nalgebra::Complex;
 
 use super::{ModeName, ModeTolerance, ModeToleranceTable, NamedBy};
 use crate::dataset::Band;
-use crate::fidelity::mode_tracks;
+use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::identification::PoleEstimate;
 use crate::response::Mode;
 
@@ -127,33 +127,43 @@ pub fn compare_modes(
 ) -> Vec<ModeRow> {
     let all: Vec<ModelModes<'_>> = std::iter::once(flown).chain(models.iter().copied()).collect();
     let tracks = mode_tracks(&all.iter().map(|model| model.modes).collect::<Vec<&[Mode]>>(), 0);
-    let row = |places: Vec<Option<(ModelModes<'_>, usize)>>, reference: usize| {
-        let mode = &flown.modes[reference];
+    let row = |track: &ModeTrack| {
+        let mode = &flown.modes[track.reference];
+        let places: Vec<Place<'_>> =
+            all.iter().zip(&track.modes).map(|(model, at)| at.map(|at| (*model, at))).collect();
         let (name, named_by) = name_of(&places, mode);
         let tolerance = name.and_then(|name| tolerances.of(name)).cloned();
         let estimate = estimate_of(mode, estimates);
         let deviation = estimate.map(|estimate| ModeValues::deviation(mode, estimate));
-        let flown = compared(mode, reference);
-        let is_known = || match (&tolerance, &deviation) {
-            (Some(tolerance), Some(deviation)) => tolerance.is_known(&flown.values, deviation),
-            _ => true,
-        };
-        let is_determined =
-            mode.frequency_rad_s >= band.min() && estimate.is_none_or(|estimate| estimate.determined) && is_known();
+        let flown = compared(mode, track.reference);
+        let is_determined = mode.frequency_rad_s >= band.min()
+            && estimate.is_none_or(|estimate| estimate.determined)
+            && tolerance.as_ref().zip(deviation.as_ref()).is_none_or(|(of, sd)| of.is_known(&flown.values, sd));
         let models: Vec<Option<ComparedMode>> =
             places[1..].iter().map(|place| place.map(|(model, at)| compared(&model.modes[at], at))).collect();
-        let verdict = |model: &Option<ComparedMode>| match (model, &tolerance) {
-            (None, _) => ModeVerdict::NotPaired,
-            _ if !is_determined => ModeVerdict::NotDetermined,
-            (_, None) => ModeVerdict::NoTolerance,
-            (Some(model), Some(tolerance)) if tolerance.holds(&flown.values, &model.values) => ModeVerdict::Within,
-            _ => ModeVerdict::Outside,
-        };
-        let verdicts = models.iter().map(verdict).collect();
+        let verdicts =
+            models.iter().map(|model| verdict(&flown, model.as_ref(), is_determined, tolerance.as_ref())).collect();
         ModeRow { name, named_by, flown, deviation, is_determined, tolerance, models, verdicts }
     };
-    let places = |modes: &[Option<usize>]| all.iter().zip(modes).map(|(model, at)| at.map(|at| (*model, at))).collect();
-    tracks.iter().map(|track| row(places(&track.modes), track.reference)).collect()
+    tracks.iter().map(row).collect()
+}
+
+/// A model and which of its modes, where it has one in the place of the flown one.
+type Place<'a> = Option<(ModelModes<'a>, usize)>;
+
+fn verdict(
+    flown: &ComparedMode,
+    model: Option<&ComparedMode>,
+    is_determined: bool,
+    tolerance: Option<&ModeTolerance>,
+) -> ModeVerdict {
+    match (model, tolerance) {
+        (None, _) => ModeVerdict::NotPaired,
+        _ if !is_determined => ModeVerdict::NotDetermined,
+        (_, None) => ModeVerdict::NoTolerance,
+        (Some(model), Some(tolerance)) if tolerance.holds(&flown.values, &model.values) => ModeVerdict::Within,
+        _ => ModeVerdict::Outside,
+    }
 }
 
 fn compared(mode: &Mode, at: usize) -> ComparedMode {
@@ -161,7 +171,7 @@ fn compared(mode: &Mode, at: usize) -> ComparedMode {
 }
 
 /// The name that the first model with named states gives to the mode in its place, else that of the flown mode by itself.
-fn name_of(places: &[Option<(ModelModes<'_>, usize)>], flown: &Mode) -> (Option<ModeName>, NamedBy) {
+fn name_of(places: &[Place<'_>], flown: &Mode) -> (Option<ModeName>, NamedBy) {
     let by_states = |(model, at): &(ModelModes<'_>, usize)| match ModeName::of(&model.modes[*at], model.states) {
         (name, NamedBy::States) => Some(name),
         (_, NamedBy::Frequency) => None,

@@ -1,12 +1,13 @@
 //! Tests of time histories within tolerances.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, dmatrix, dvector};
 use proptest::prelude::*;
 
 use super::known_answers_tests::{answers, number};
 use super::*;
-use crate::dataset::Channel;
-use crate::identification::ValidationWindow;
+use crate::dataset::{Channel, StateSpace};
+use crate::executor::Sequential;
+use crate::identification::{FirstOrderHold, Segment, ValidationSettings, ValidationWindow, validate};
 
 const SAMPLE_TIME_S: f64 = 0.02;
 
@@ -97,6 +98,25 @@ fn a_record_of_several_windows_counts_every_sample_once() {
     let other = ChannelTolerance { output: 1, ..tolerance(0.5, 0.1) };
     let refused = RecordCheck::of_windows(&windows, &other).unwrap_err();
     assert_eq!(refused.to_string(), "there is no output number 2 in the record");
+}
+
+#[test]
+fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
+    let model = |gain: f64| StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap();
+    let stick = DMatrix::from_fn(1000, 1, |n, _| 10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin());
+    let held = FirstOrderHold::of(&model(2.0), SAMPLE_TIME_S).unwrap();
+    let flown = held.simulate(&dvector![1.0], &stick);
+    let segment = Segment { record: 0, start_s: 0.0, sample_time_s: SAMPLE_TIME_S, inputs: stick, outputs: flown };
+    let record = |gain: f64| {
+        let settings = ValidationSettings::unfiltered();
+        let validation = validate(&model(gain), std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
+        RecordCheck::of_windows(&validation.windows, &tolerance(1.0, 0.1)).unwrap().remove(0)
+    };
+    let (right, wrong) = (record(2.0), record(1.0));
+    assert_eq!((right.windows.len(), right.share_inside()), (2, 1.0));
+    assert!(right.correlation().unwrap() > 0.999_999);
+    assert!(wrong.share_inside() < 0.5 && wrong.worst().unwrap().largest_excess > 1.0);
+    assert!(wrong.correlation().unwrap() > 0.9, "too small, but the right trend");
 }
 
 #[test]

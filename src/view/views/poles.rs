@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use egui::{Panel, RichText, Ui, Vec2, vec2};
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_core::requirements::{ModeName, NamedBy};
 use gdcm_core::response::{Mode, finite_zeros};
 use gdcm_core::study::{ConditionModes, Edit, Table};
 use gdcm_core::units::number;
@@ -149,6 +150,7 @@ impl FigureWords for PoleWords<'_> {
         ui.label(&id.name);
         let lines = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
             Some(mode) => std::iter::once(mode_words(mode))
+                .chain(name_words(mode, &models[index]))
                 .chain(participation_words(mode, &models[index]))
                 .chain(sampled_words(&models[index]))
                 .collect(),
@@ -252,6 +254,12 @@ fn mode_words(mode: &Mode) -> String {
     words.join(", ")
 }
 
+/// What a mode is called, where the states of its model are named (M17.3).
+fn name_words(mode: &Mode, model: &Model) -> Option<String> {
+    let (name, by) = ModeName::of(mode, &model.states);
+    name.filter(|_| by == NamedBy::States).map(|name| name.to_string())
+}
+
 /// What a pole of a model of discrete time stands for.
 fn sampled_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else { return None };
@@ -280,7 +288,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
     let kind = BundleKind::Physics;
     let models = modes.condition.bundle(kind);
     let title = format!("Modes of condition {}", modes.condition.id());
-    let columns = ["|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
+    let columns = ["mode", "|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();
     let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
@@ -289,6 +297,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
         let jumps: Vec<&str> = track.jumps.iter().map(|&model| models[model].name.as_str()).collect();
         let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
         table.row([
+            name_words(mode, &models[reference]).unwrap_or_default(),
             figure(mode.frequency_rad_s),
             mode.damping_ratio.filter(|_| mode.oscillates()).map(figure).unwrap_or_default(),
             mode.time_constant_s.map(figure).unwrap_or_default(),

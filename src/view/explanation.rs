@@ -36,7 +36,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         ui.label(RichText::new(step).monospace());
     }
     ui.add_space(4.0);
-    Grid::new("terms of the equation").num_columns(2).spacing([10.0, 2.0]).show(ui, |ui| {
+    Grid::new("terms of the equation").num_columns(2).min_row_height(14.0).spacing([10.0, 2.0]).show(ui, |ui| {
         for (symbol, meaning) in found.terms() {
             ui.label(RichText::new(symbol).monospace());
             ui.add(Label::new(palette.small(meaning)).wrap());

@@ -77,6 +77,10 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     let reference =
         condition.model(BundleKind::Physics, state(&window).shown().unwrap().representative_name(BundleKind::Physics));
     assert!(!table.rows.is_empty() && table.rows.len() <= reference.unwrap().order().unwrap());
+    let names: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    for name in ["phugoid", "Dutch roll", "spiral"] {
+        assert_eq!(names.iter().filter(|of| **of == name).count(), 1, "{name} in {names:?}");
+    }
 
     // The fastest pole of some perturbed model stands clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();

@@ -3,7 +3,7 @@
 use super::Derivation;
 
 /// Every symbol that equations here are written with, its meaning, and its unit where it has one (docs/method.md).
-const TERMS: [(&str, &str); 29] = [
+const TERMS: [(&str, &str); 30] = [
     ("G", "gain that the response wants, a ratio"),
     ("D", "delay that the response wants [s]"),
     ("H_ref", "response of the identified representative"),
@@ -20,7 +20,8 @@ const TERMS: [(&str, &str); 29] = [
     ("k", "gain of a channel"),
     ("L_o", "lead filter of the output channel"),
     ("L_i", "lead filter of the input channel"),
-    ("w", "weight of a response, 0 where it is ignored; in r of a coordinate of the trim"),
+    ("w", "weight of a response, 0 where it is ignored"),
+    ("w_k", "weight of coordinate k of the trim"),
     ("α", "weight of the corrections of the outputs"),
     ("LB", "lower bound of the channels"),
     ("UB", "upper bound of the channels"),
@@ -53,9 +54,7 @@ fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     equation.match_indices(symbol).map(|(place, _)| place).find(|&place| {
         let before = equation[..place].chars().next_back();
         let after = equation[place + symbol.len()..].chars().next();
-        // `w_k` is a w.
-        let is_index = |c: &char| *c == '_' && symbol == "w";
-        !is_part(before) && !is_part(after.filter(|c| !is_index(c)))
+        !is_part(before) && !is_part(after)
     })
 }
 

@@ -54,6 +54,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "schedule",
             "uncertainty",
             "couplings",
+            "requirements",
         ],
     ),
 ];

@@ -129,7 +129,8 @@ pub enum NoMetric {
 }
 
 /// Which margin is the bandwidth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum BandwidthRule {
     /// The phase margin of 45 deg.
     Phase,

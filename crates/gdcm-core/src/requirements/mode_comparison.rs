@@ -14,6 +14,7 @@
 use std::f64::consts::{LN_2, TAU};
 
 use nalgebra::Complex;
+use serde::Serialize;
 
 use super::{ModeName, ModeTolerance, ModeToleranceTable, NamedBy};
 use crate::dataset::Band;
@@ -34,7 +35,7 @@ pub struct ModelModes<'a> {
 }
 
 /// What is asked of a mode, or the standard deviations of that.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModeValues {
     /// Period \[s\]; none where it does not oscillate.
     pub period_s: Option<f64>,
@@ -68,7 +69,8 @@ impl ModeValues {
 }
 
 /// What is said of a mode of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ModeVerdict {
     /// Within the tolerance.
     Within,

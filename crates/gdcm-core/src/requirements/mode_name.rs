@@ -65,7 +65,8 @@ impl fmt::Display for ModeName {
 }
 
 /// What a mode is named by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum NamedBy {
     /// The states that take part in it.
     States,

@@ -48,14 +48,15 @@ fn the_json_and_the_csv_of_requirements_say_the_same() {
     let table = rows(&desk.path("requirements.csv"));
     assert!(table.len() > 40, "{table:?}");
     for row in &table {
-        let is_same = |finding: &&Value| finding["condition"].to_string() == row["condition"];
+        let condition = json!(row["condition"].parse::<i64>().unwrap());
+        let is_same = |finding: &&Value| finding["condition"] == condition;
         let of_condition = entries(&written[&row["question"]]).iter().filter(is_same);
         let numbers = |finding: &Value| match row["question"].as_str() {
             "modes" => finding[&row["role"]].clone(),
             _ => finding.clone(),
         };
         let is_meant = |finding: &&Value| match row["question"].as_str() {
-            "modes" => finding["number"].to_string() == row["mode"].split(' ').next().unwrap(),
+            "modes" => finding["number"].as_u64() == row["mode"].split(' ').next().and_then(|of| of.parse().ok()),
             "bandwidth" => {
                 finding["role"] == row["role"] && finding["output"] == row["output"] && finding["input"] == row["input"]
             }

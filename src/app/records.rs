@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, WantedDataset};
 use crate::view::{FormKind, View};
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, ConditionId, ConditionRecord, Dataset};
-use gdcm_core::identification::{Identification, IdentificationError};
+use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::identification::{Identification, IdentificationError, Signal};
 use gdcm_core::records::{
     LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records, leave_out_copies,
     with_topics_joined,
@@ -265,7 +265,8 @@ impl GdcmApp {
     }
 
     fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
-        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered)?));
+        let channels = self.record_channels();
+        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered, &channels)?));
         let taken: Vec<(ConditionId, Arc<AdoptedModels>)> = conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
             return self.notify_error("nothing was identified yet".to_owned());
@@ -302,6 +303,7 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::SetDelay(signal, delay_s) => {
             records.channel_mut(&signal).into_iter().for_each(|channel| channel.delay_s = delay_s);
         }
+        RecordsCommand::SetRemedies(index, remedies) => set_remedies(records, index, &remedies, channels),
         RecordsCommand::SetHold(signal, hold) => {
             records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
         }
@@ -312,11 +314,7 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
             channels.resampling.band_end = band.map(|[_, end]| end).or(channels.resampling.band_end);
             for row in &mut records.rows {
                 if row.layout.is_resampled(&row.table, &channels) {
-                    let (table, layout) = (Arc::clone(&row.table), row.layout.clone());
-                    *row = LaidOutRecord {
-                        used: row.used,
-                        ..LaidOutRecord::new(table, layout, row.guess.clone(), &channels)
-                    };
+                    *row = row.laid_out(row.layout.clone(), &channels);
                 }
             }
         }
@@ -349,9 +347,24 @@ fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayou
     let Some(table) = records.rows.get(index).map(|row| Arc::clone(&row.table)) else { return };
     for row in &mut records.rows {
         let Some(carried) = layout.carried_to(&row.table, &table) else { continue };
-        let (used, guess) = (row.used, row.guess.clone());
-        *row = LaidOutRecord { used, ..LaidOutRecord::new(Arc::clone(&row.table), carried, guess, channels) };
+        let carried = carried.with_remedies_of(&row.layout);
+        *row = row.laid_out(carried, channels);
     }
+}
+
+/// Puts channels right in one record alone.
+fn set_remedies(
+    records: &mut ConditionRecords,
+    index: usize,
+    remedies: &[(Signal, ChannelRemedy)],
+    channels: &RecordChannels,
+) {
+    let Some(row) = records.rows.get_mut(index) else { return };
+    let mut layout = row.layout.clone();
+    for (signal, remedy) in remedies {
+        layout.channel_mut(signal.role, signal.index).into_iter().for_each(|used| used.remedy = *remedy);
+    }
+    *row = row.laid_out(layout, channels);
 }
 
 fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
@@ -383,6 +396,11 @@ fn of_entries(channels: &RecordChannels, id: ConditionId, entries: &[ConditionRe
                 Ok(table) => {
                     let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
                     let mut row = row_of(table, channels);
+                    if !entry.remedies.is_empty() {
+                        let mut layout = row.layout.clone();
+                        layout.put_right(&entry.remedies, channels);
+                        row = row.laid_out(layout, channels);
+                    }
                     (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
                     found.rows.entry(id).or_default().push(row);
                 }
@@ -427,7 +445,7 @@ fn dataset_of_files(
         problems.extend(row.problems.iter().map(|problem| format!("{}: {problem}", row.table.name)));
         if row.problems.is_empty() {
             channels.take_units(&row.layout, &row.table);
-            entries.push(relative_entry(row.layout.condition_record(&row.table, &row.guess), sources, path));
+            entries.push(relative_entry(row.layout.condition_record(&row.table, &row.guess, &channels), sources, path));
         }
     }
     if entries.is_empty() {

@@ -1,23 +1,26 @@
 //! `gdcm identify`: models out of flight records.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::executor::Pool;
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, BundleKind, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::dataset::{Band, BundleKind, ChannelRemedy, ChannelSide, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
-    is_held,
+    RecordUse, Signal, is_held,
 };
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{ChannelList, LaidOutRecord, RecordChannels, ResamplingWish, SaidChannel, median_step};
+use gdcm_core::records::{
+    ChannelList, LaidOutRecord, RecordChannels, ResamplingWish, SaidChannel, SaidConversion, median_step,
+};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory, relative_entry};
 
 use super::{
     ChannelConversion, ChannelDelay, ChannelTopic, Destination, Failure, Group, IdentifyArguments, ReadRecords,
-    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, laid_out, listed_paths, record_table,
-    said_conditions, say,
+    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, is_called, laid_out, listed_paths,
+    note, of_one_record, record_table, said_conditions, say,
 };
 
 /// The file of what was found.
@@ -47,9 +50,12 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
             }
         };
         let records: Vec<ConditionRecord> =
-            task.records.iter().zip(&found.record_uses).map(|(record, used)| record.entry(used)).collect();
+            task.records.iter().zip(&found.record_uses).map(|(record, used)| record.entry(used, &channels)).collect();
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
-        let of_task: Vec<CautionNote> = found.cautions.iter().map(IdentificationCaution::note).chain(late).collect();
+        let facts: Vec<String> = found.record_uses.iter().flat_map(RecordUse::facts).collect();
+        facts.iter().for_each(|fact| note(fact));
+        let reading: Vec<String> = reading.iter().cloned().chain(facts).collect();
+        let of_task: Vec<CautionNote> = found.cautions.iter().map(|of| task.note(of)).chain(late).collect();
         cautions.extend(of_task.iter().map(|of| (task.condition, of.text.clone())));
         let is_here = |name: &str| task.records.iter().any(|record| record.table.name == name);
         let copies = copies.iter().filter(|(first, _)| is_here(first)).map(|(_, note)| note.clone());
@@ -149,6 +155,25 @@ impl IdentificationTask {
         Some(CautionNote { code: "time-skew", channel: Some(signal.name), text, ..CautionNote::default() })
     }
 
+    /// A caution with the options that put right what it speaks of.
+    fn note(&self, caution: &IdentificationCaution) -> CautionNote {
+        let mut note = caution.note();
+        let IdentificationCaution::Contradiction { records, fault: Some(fault), .. } = caution else { return note };
+        let Some((_, record)) = records.last() else { return note };
+        let channels = self.request.options.preparation.outputs.iter().enumerate();
+        let signal = |(index, channel): (usize, &ChannelPreparation)| {
+            let (role, name) = (ChannelSide::Output, channel.name.clone());
+            Signal { role, index, name }
+        };
+        let outputs: Vec<Signal> = channels.map(signal).collect();
+        let options = fault.remedies(&outputs).into_iter().map(|(signal, remedy)| match remedy.factor {
+            1.0 => format!("--delay {record}:{signal}={:.3}", remedy.delay_s),
+            factor => format!("--factor {record}:{signal}={factor:.2}"),
+        });
+        note.text += &format!(" ({})", options.collect::<Vec<_>>().join(" "));
+        note
+    }
+
     /// A line a record, below the condition where there is one.
     fn table(&self) -> String {
         match self.condition {
@@ -187,6 +212,7 @@ fn tasks(
 ) -> Result<Tasks, Failure> {
     let ReadRecords { mut records, unread, reading, copies } = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
+    put_right(arguments, &mut records, channels)?;
     let mut preparation = preparation(channels, &arguments.delay)?;
     hold(&mut preparation, &records, channels);
     let groups = match destination {
@@ -252,9 +278,8 @@ fn channels(
         held: arguments.held.iter().cloned().collect(),
     };
     let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
-    for (option, ChannelConversion { channel, said }) in
-        units.chain(arguments.factor.iter().map(|of| ("--factor", of.clone())))
-    {
+    let factors = arguments.factor.iter().filter(|of| of_one_record(&of.channel).is_none());
+    for (option, ChannelConversion { channel, said }) in units.chain(factors.map(|of| ("--factor", of.clone()))) {
         let refused = |reason: String| Err(Failure::Option { option, reason });
         if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
             return refused(format!("{channel} is none of the channels"));
@@ -325,10 +350,48 @@ fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &Rec
     }
 }
 
+/// Puts channels right in single records, as asked.
+fn put_right(
+    arguments: &IdentifyArguments,
+    records: &mut [LaidOutRecord],
+    channels: &RecordChannels,
+) -> Result<(), Failure> {
+    let delays = arguments.delay.iter().map(|of| {
+        let remedy = ChannelRemedy { delay_s: of.delay_s, ..ChannelRemedy::NONE };
+        ("--delay", &of.channel, remedy)
+    });
+    let factors = arguments.factor.iter().filter_map(|of| match of.said {
+        SaidConversion::Factor(factor) => {
+            Some(("--factor", &of.channel, ChannelRemedy { factor, ..ChannelRemedy::NONE }))
+        }
+        SaidConversion::Unit(_) => None,
+    });
+    for (option, said, remedy) in delays.chain(factors) {
+        let Some((record, channel)) = of_one_record(said) else { continue };
+        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
+            return Err(Failure::Option { option, reason: format!("{channel} is none of the channels") });
+        }
+        let mut of_it = records.iter_mut().filter(|of| is_called(&of.table, record)).peekable();
+        if of_it.peek().is_none() {
+            return Err(Failure::Option { option, reason: format!("\"{record}\" is none of the records") });
+        }
+        for of in of_it {
+            let mut layout = of.layout.clone();
+            layout.put_right(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
+            *of = of.laid_out(layout, channels);
+            if let Some(problem) = of.problems.first() {
+                return Err(Failure::Option { option, reason: format!("{record}: {problem}") });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// How the channels are prepared: their known delays are taken out.
 fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
+    let delays: Vec<&ChannelDelay> = delays.iter().filter(|of| of_one_record(&of.channel).is_none()).collect();
     let is_known =
-        |delay: &ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
+        |delay: &&&ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
     if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
         let reason = format!("{} is none of the channels", unknown.channel);
         return Err(Failure::Option { option: "--delay", reason });

@@ -54,7 +54,7 @@ pub struct IdentifyArguments {
     /// A record to validate with, kept from identification: its file or its name; may be repeated. Without it, those whose names say so.
     #[arg(long, value_name = "FILE")]
     pub hold_out: Vec<String>,
-    /// A known delay of a channel, in seconds, positive where it is logged late; may be repeated.
+    /// A known delay of a channel, in seconds, positive where it is logged late; in one record alone with its name before (RECORD:CHANNEL=SECONDS); may be repeated.
     #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
     pub delay: Vec<ChannelDelay>,
     /// Recorded references that drove the loop from outside (a chirp, a position reference), in the same way as inputs: gusts fed back into the inputs no longer bias the response.
@@ -72,7 +72,7 @@ pub struct IdentifyArguments {
     /// The unit of a channel's samples, whatever their file says; may be repeated.
     #[arg(long, value_name = "CHANNEL=UNIT", value_parser = said_unit)]
     pub unit: Vec<ChannelConversion>,
-    /// What a channel's samples are multiplied by, negative where the sign is the other one; may be repeated.
+    /// What a channel's samples are multiplied by, negative where the sign is the other one; in one record alone with its name before (RECORD:CHANNEL=X); may be repeated.
     #[arg(long, value_name = "CHANNEL=X", value_parser = said_factor, allow_hyphen_values = true)]
     pub factor: Vec<ChannelConversion>,
     /// Dataset that the models are put into; it is written anew, beside identified.json.
@@ -216,6 +216,11 @@ impl FromStr for RecordPart {
             _ => Err(expected()),
         }
     }
+}
+
+/// A channel with what stands before it, where that is a record: "sweep.csv:P".
+pub fn of_one_record(said: &str) -> Option<(&str, &str)> {
+    said.rsplit_once(':').filter(|(record, channel)| !record.is_empty() && !channel.is_empty())
 }
 
 /// A known delay of a channel.

@@ -36,7 +36,7 @@ use arguments::{Arguments, real_number, whole_number};
 use destination::{Destination, Group, said_conditions};
 use failure::{Failure, listed_paths};
 use models::{ReadingProgress, counted};
-use read_record::{ReadRecords, hold_out, laid_out, record_table};
+use read_record::{ReadRecords, hold_out, is_called, laid_out, record_table};
 use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
 use summary::{LABEL, leave_one_out_section};
 use terminal::{Manner, TerminalProgress, caution, caution_of, error, keep_caution, note, progress_target, say};
@@ -48,7 +48,7 @@ pub use arguments::{
 };
 pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{
-    ChannelConversion, ChannelDelay, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart,
+    ChannelConversion, ChannelDelay, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart, of_one_record,
 };
 
 /// What the command line asks for.

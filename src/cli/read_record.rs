@@ -111,7 +111,7 @@ fn parts(tables: Vec<RecordTable>, asked: &[RecordPart]) -> Result<Vec<RecordTab
 }
 
 /// Whether a record is called so: by its file, its name, or its name in its file.
-fn is_called(table: &RecordTable, wanted: &str) -> bool {
+pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     let source = &table.source;
     let file = Path::new(wanted).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     source.file.rsplit('/').next() == Some(&file) || table.name == *wanted || source.variable.as_deref() == Some(wanted)

@@ -248,3 +248,63 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
     let again = identified(&["--delay", &format!("Q={option}")], "again");
     assert!(!again.contains("seems to be logged"), "{again}");
 }
+
+#[test]
+fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_puts_it_right() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    // Q of the last flight two samples of 40 ms later than in the others, P of it turned.
+    let text = fs::read_to_string(desk.path("flight_3.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let place = |name: &str| rows[0].iter().position(|of| of.starts_with(name)).unwrap();
+    let (p, q) = (place("P"), place("Q"));
+    let written = |late: usize, sign: &str| {
+        let row = |(at, row): (usize, &Vec<&str>)| {
+            let mut row: Vec<String> = row.iter().map(|value| (*value).to_owned()).collect();
+            if at > 0 {
+                row[q] = rows[at.saturating_sub(late).max(1)][q].to_owned();
+                row[p] = format!("{sign}{}", row[p]).replace("--", "");
+            }
+            row.join(",") + "\n"
+        };
+        fs::write(desk.path("flight_3.csv"), rows.iter().enumerate().map(row).collect::<String>()).unwrap();
+    };
+    let identified = |more: &[&str], out: &str| {
+        let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
+        // Above that no input moves any output enough.
+        let into = ["--into", "late.json", "--condition", "7", "--band", "0.5", "9", "--out", out];
+        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
+        assert_eq!(ended.status, 0, "{ended:?}");
+        ended.error
+    };
+    for (late, sign, option, code) in [(2, "", "--delay", "time-skew"), (0, "-", "--factor", "sign")] {
+        written(late, sign);
+        let said = identified(&[], &format!("{code}-first"));
+        let line = said.lines().find(|line| line.contains(" contradict")).unwrap_or_else(|| panic!("{code}: {said}"));
+        let file = fs::read_to_string(desk.path(&format!("{code}-first/identified.json"))).unwrap();
+        assert!(file.contains(&format!("\"code\": \"{code}\"")) || file.contains(&format!("\"code\":\"{code}\"")));
+        let said = line.rsplit_once(&format!("({option} ")).unwrap().1.trim_end_matches(')');
+        let again = identified(&[option, said], &format!("{code}-again"));
+        // A large delay comes out short (M14.16): what is left is asked again.
+        let contrast = |said: &str| {
+            let after = said.split_once("contradict").and_then(|(_, after)| after.split_once("(F "));
+            after.map_or(0.0, |(_, number)| number.split_once(';').unwrap().0.parse::<f64>().unwrap())
+        };
+        assert!(contrast(&again) < 0.5 * contrast(line), "{said}: {line}\n{again}");
+        let dataset = fs::read_to_string(desk.path(&format!("{code}-again/late.json"))).unwrap();
+        assert!(dataset.contains("\"remedies\""), "the dataset says what was put right");
+    }
+    let ended = desk.gdcm(&[
+        "identify",
+        "flight_0.csv",
+        "--into",
+        "late.json",
+        "--condition",
+        "7",
+        "--out",
+        "no",
+        "--delay",
+        "x:Q=0.1",
+    ]);
+    assert!(ended.error.contains("\"x\" is none of the records"), "{ended:?}");
+}

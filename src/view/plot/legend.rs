@@ -32,9 +32,9 @@ pub(super) struct RoleChip {
 }
 
 impl RoleChip {
-    /// Leaves the name of a single model out of what the chip says.
+    /// Leaves the name of a single model or variant out of what the chip says.
     pub(super) fn leave_name_out(&mut self) {
-        if self.role == Role::Representative {
+        if matches!(self.role, Role::Representative | Role::Variant) {
             self.text = self.role.name().to_owned();
         }
     }
@@ -61,12 +61,14 @@ pub(super) fn role_chips(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette:
 
 fn text(role: Role, members: &[&BodeCurve]) -> String {
     let name = role.name();
+    let short = |label: &str| {
+        let start: String = label.chars().take(NAME_LENGTH).collect();
+        let ellipsis = if start.len() < label.len() { "…" } else { "" };
+        format!("{start}{ellipsis}")
+    };
     match (role, members) {
-        (Role::Representative, [only]) if !only.label.is_empty() => {
-            let short: String = only.label.chars().take(NAME_LENGTH).collect();
-            let ellipsis = if short.len() < only.label.len() { "…" } else { "" };
-            format!("{name} {short}{ellipsis}")
-        }
+        (Role::Representative, [only]) if !only.label.is_empty() => format!("{name} {}", short(&only.label)),
+        (Role::Variant, [only]) => short(&only.label),
         (Role::Identified, _) => "others".to_owned(),
         _ => name.to_owned(),
     }

@@ -10,7 +10,7 @@ use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, char
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
-use gdcm_core::identification::{FlightRecord, Segment, Treatment, spectra};
+use gdcm_core::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
 use gdcm_core::records::{ModeSpan, Spectrogram};
 
 use super::advanced::numbers;
@@ -44,6 +44,12 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
             commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
         }
     }
+    let found = records.identification().filter(|_| !records.changed);
+    let uses = found.into_iter().flat_map(|found| found.record_uses.iter().enumerate());
+    let uses = uses.filter(|(record, _)| records.row_of_record(*record) == Some(records.chosen));
+    for fact in uses.flat_map(|(_, used)| used.facts()) {
+        ui.label(palette.small(fact));
+    }
     let models = simulated(state, palette);
     for model in &models {
         model.absence_ui(ui, state, palette);
@@ -74,6 +80,12 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
                 chart.lines.extend(models.iter().flat_map(|model| model.lines(ui, output)));
                 chart.notes.extend(models.iter().filter_map(|model| Some((model.fit_words(output)?, model.color))));
             }
+            let channel = dataset.inputs().iter().chain(dataset.outputs()).nth(place).map(|of| of.name.as_str());
+            let of_channel = |(row, note): &(Option<usize>, CautionNote)| {
+                row.is_none_or(|row| row == records.chosen) && note.channel.as_deref() == channel
+            };
+            let marks = records.cautions().filter(of_channel).map(|(_, note)| note.mark());
+            chart.notes.extend(marks.map(|mark| (format!("⚠ {mark}"), palette.warning)));
             chart_ui(ui, Rect::from_min_size(corner, vec2(width, height)), &chart, palette);
         }
     });

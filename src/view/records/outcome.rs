@@ -5,9 +5,10 @@ use std::sync::Arc;
 use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::view::{Command, Palette, SMALL_SIZE};
-use gdcm_core::dataset::{BundleKind, ChannelSide};
+use gdcm_core::dataset::{BundleKind, ChannelRemedy, ChannelSide};
 use gdcm_core::identification::{
-    HELD_OUT, Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution, Signal,
+    ChannelPreparation, HELD_OUT, Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution,
+    RecordFault, Signal,
 };
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
@@ -151,6 +152,29 @@ fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Actio
     (text, RecordsCommand::SetDelay(signal.clone(), delay_s))
 }
 
+/// Takes what is wrong with a record out of it, besides what had been taken out.
+fn put_right(records: &ConditionRecords, record: usize, name: &str, fault: &RecordFault) -> Option<Action> {
+    let row = records.row_of_record(record)?;
+    let mut layout = records.rows[row].layout.clone();
+    let signal = |(index, channel): (usize, &ChannelPreparation)| {
+        let (role, name) = (ChannelSide::Output, channel.name.clone());
+        Signal { role, index, name }
+    };
+    let outputs: Vec<Signal> = records.outputs.iter().enumerate().map(signal).collect();
+    let mut after = |(signal, remedy): (Signal, ChannelRemedy)| {
+        let used = layout.channel_mut(signal.role, signal.index)?;
+        Some((signal, used.remedy.then(remedy)))
+    };
+    let remedies: Vec<(Signal, ChannelRemedy)> = fault.remedies(&outputs).into_iter().filter_map(&mut after).collect();
+    let words = match fault {
+        RecordFault::OutputsLate(delay_s) => format!("Remove {:.0} ms from the outputs of {name}", s_to_ms(*delay_s)),
+        RecordFault::Late(signal, delay_s) => format!("Remove {:.0} ms from {signal} of {name}", s_to_ms(*delay_s)),
+        RecordFault::Gain(signal, factor) if *factor < 0.0 => format!("Turn {signal} of {name}"),
+        RecordFault::Gain(signal, factor) => format!("Multiply {signal} of {name} by {factor:.2}"),
+    };
+    Some((words, RecordsCommand::SetRemedies(row, remedies)))
+}
+
 /// What a button says, and what it asks for.
 type Action = (String, RecordsCommand);
 
@@ -185,8 +209,10 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<A
     };
     match caution {
         IdentificationCaution::UnlikeRecord { record, name, .. } => leave_out(*record, name).into_iter().collect(),
-        IdentificationCaution::Contradiction { records: of, .. } => {
-            of.iter().filter_map(|(record, name)| leave_out(*record, name)).collect()
+        IdentificationCaution::Contradiction { records: of, fault, .. } => {
+            let mended = of.last().zip(fault.as_ref());
+            let mended = mended.and_then(|((record, name), fault)| put_right(records, *record, name, fault));
+            mended.into_iter().chain(of.iter().filter_map(|(record, name)| leave_out(*record, name))).collect()
         }
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],

@@ -3,7 +3,7 @@
 use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
 
 use crate::view::{BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
-use gdcm_core::dataset::{ChannelSide, RecordKind};
+use gdcm_core::dataset::{ChannelRemedy, ChannelSide, RecordKind};
 use gdcm_core::identification::Signal;
 use gdcm_core::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
 use gdcm_core::units::{ms_to_s, number, s_to_ms};
@@ -109,7 +109,15 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
     if shown.clicked() {
         commands.push(RecordsCommand::Choose(index).into());
     }
-    ui.label(cost_of(records, index).map_or(RichText::new(""), |cost| cost_text(cost, palette)));
+    ui.horizontal(|ui| {
+        ui.label(cost_of(records, index).map_or(RichText::new(""), |cost| cost_text(cost, palette)));
+        let of_it: Vec<String> =
+            records.cautions().filter(|(row, _)| *row == Some(index)).map(|(_, note)| note.text).collect();
+        if !of_it.is_empty() {
+            let mark = ui.label(palette.small_warning("⚠"));
+            named(mark.on_hover_text(of_it.join("\n\n")), AccessRole::Label, &format!("Cautions of {name}"));
+        }
+    });
 }
 
 /// A cost per degree of freedom, in the colour of what it says of the fit.
@@ -149,6 +157,8 @@ fn cost_of(records: &ConditionRecords, index: usize) -> Option<f64> {
 }
 
 const FIELD_WIDTH: f32 = 90.0;
+/// Width of what holds for the record shown alone \[pt\].
+const HERE_WIDTH: f32 = 60.0;
 
 /// A line for the time and for each channel: column, factor, time skew.
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
@@ -158,12 +168,17 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         palette.small("What is set here holds for every record of the condition that has columns of these names."),
     );
     ScrollArea::vertical().id_salt("columns of a record").auto_shrink(false).show(ui, |ui| {
-        Grid::new("columns of a record").num_columns(4).striped(true).spacing([10.0, 4.0]).show(ui, |ui| {
+        Grid::new("columns of a record").num_columns(6).striped(true).spacing([10.0, 4.0]).show(ui, |ui| {
             for (heading, hint) in [
                 ("channel", "Of the dataset"),
                 ("column of the file", "Which holds it"),
                 ("factor", "From the unit of the file to that of the dataset"),
                 ("time skew [ms]", "How much later the channel is logged than it happened"),
+                (
+                    "late here [ms]",
+                    "How much later it is logged in this record than in the others: taken out of it alone",
+                ),
+                ("times, here", "What its samples are multiplied by in this record alone: -1 turns its sign"),
             ] {
                 ui.label(palette.small(heading)).on_hover_text(hint);
             }
@@ -220,7 +235,7 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
     };
     let factor = used.map_or(1.0, |used| used.factor);
     let column = column_ui(ui, &format!("Column of {name}"), row, used.map(|used| used.column));
-    commands.extend(column.map(|column| with(ColumnUse { column, factor })));
+    commands.extend(column.map(|column| with(ColumnUse::times(column, factor))));
     let label = format!("Factor of the column of {name}");
     let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
     commands.extend(typed.flatten().zip(used).map(|(factor, used)| with(ColumnUse { factor, ..used })));
@@ -229,6 +244,17 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
     let typed = number_entry_ui(ui, &label, &number(s_to_ms(delay_s)), "0", FIELD_WIDTH, commands);
     let set = |delay_ms: Option<f64>| RecordsCommand::SetDelay(signal.clone(), ms_to_s(delay_ms.unwrap_or(0.0))).into();
     commands.extend(typed.map(set));
+    if let Some(used) = used {
+        let set =
+            |remedy: ChannelRemedy| RecordsCommand::SetRemedies(records.chosen, vec![(signal.clone(), remedy)]).into();
+        let ChannelRemedy { delay_s, factor } = used.remedy;
+        let label = format!("Delay of {name} in this record");
+        let typed = number_entry_ui(ui, &label, &number(s_to_ms(delay_s)), "0", HERE_WIDTH, commands);
+        commands.extend(typed.map(|ms| set(ChannelRemedy { delay_s: ms_to_s(ms.unwrap_or(0.0)), factor })));
+        let label = format!("Multiplier of {name} in this record");
+        let typed = number_entry_ui(ui, &label, &number(factor), "1", HERE_WIDTH, commands);
+        commands.extend(typed.map(|factor| set(ChannelRemedy { delay_s, factor: factor.unwrap_or(1.0) })));
+    }
     ui.end_row();
 }
 

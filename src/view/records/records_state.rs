@@ -7,9 +7,9 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_core::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
-    ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
+    CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
 use gdcm_core::records::{
     ChannelList, ColumnUse, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish,
@@ -107,6 +107,8 @@ pub enum RecordsCommand {
     SetLayout(usize, RecordLayout),
     /// Say how late a channel is logged \[s\].
     SetDelay(Signal, f64),
+    /// Put channels right in one record alone (M14.16).
+    SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
     /// Say what the stairs in a channel are.
     SetHold(Signal, Hold),
     /// Identify over another band \[rad/s\]; none takes the study's.
@@ -183,6 +185,16 @@ impl ConditionRecords {
         self.rows.iter().enumerate().filter(|(_, row)| row.used_flight().is_some())
     }
 
+    /// What speaks against what was identified, and of which row where it is of one; nothing once something else was said.
+    pub fn cautions(&self) -> impl Iterator<Item = (Option<usize>, CautionNote)> {
+        let found = self.identification().filter(|_| !self.changed);
+        found.into_iter().flat_map(|found| &found.cautions).map(|caution| {
+            let note = caution.note();
+            let named = |name: &String| self.rows.iter().position(|row| row.table.name == *name);
+            (note.record.as_ref().and_then(named), note)
+        })
+    }
+
     /// The row of a record of the identification.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
@@ -243,9 +255,9 @@ impl ConditionRecords {
     }
 
     /// What is taken into the condition, where something was identified.
-    pub fn taken(&self, offered: OfferedModels) -> Option<Arc<AdoptedModels>> {
+    pub fn taken(&self, offered: OfferedModels, channels: &RecordChannels) -> Option<Arc<AdoptedModels>> {
         let found = self.identification()?;
-        let entries = self.used_rows().zip(&found.record_uses).map(|((_, row), used)| row.entry(used));
+        let entries = self.used_rows().zip(&found.record_uses).map(|((_, row), used)| row.entry(used, channels));
         Some(Arc::new(AdoptedModels::of(found, offered, entries.collect())))
     }
 }

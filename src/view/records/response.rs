@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use egui::{Color32, Label, Rect, RichText, Ui, vec2};
 
-use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, chart_ui};
+use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
 use crate::view::{Palette, SMALL_SIZE, State};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
-    EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
+    CautionNote, EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
     TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
 };
 use gdcm_core::response::{ResponseShape, evaluate};
@@ -81,10 +81,33 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     for (row, (part, label)) in [(1, "Magnitude [dB]"), (2, "Phase [deg]")].into_iter().enumerate() {
         let title = format!("{name}: {}", if row == 0 { "magnitude" } else { "phase" });
         let across = if row == 1 { state.display.unit.axis_label() } else { String::new() };
-        let chart = chart_of((&title, &across, label), &drawn, part, state, palette);
+        let mut chart = chart_of((&title, &across, label), &drawn, part, state, palette);
+        if row == 0 {
+            chart.notes.extend(marks(page).map(|mark| (format!("⚠ {mark}"), palette.warning)));
+        }
+        chart.spans.extend(spans(page));
         let corner = area.min + vec2(0.0, row as f32 * height);
         chart_ui(ui, Rect::from_min_size(corner, vec2(area.width(), height)), &chart, palette);
     }
+}
+
+/// What speaks against the response shown, in a few words each: of the pair, of its input, its output, or of all.
+fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static str> {
+    let (dataset, pair) = (state.dataset(), state.display.pair);
+    let names = [&dataset.outputs()[pair.output].name, &dataset.inputs()[pair.input].name];
+    let concerns = move |note: &CautionNote| match (&note.pair, &note.channel, note.code) {
+        (Some(of), ..) => [&of[0], &of[1]] == names,
+        (None, Some(channel), _) => note.record.is_none() && names.contains(&channel),
+        (None, None, code) => code.starts_with("feedback"),
+    };
+    records.cautions().map(|(_, note)| note).filter(concerns).map(|note| note.mark())
+}
+
+/// Where in frequency a caution of all responses holds.
+fn spans(Page { records, palette, .. }: Page<'_>) -> impl Iterator<Item = ChartSpan> {
+    let color = palette.warning.gamma_multiply(0.1);
+    let of_all = records.cautions().filter(|(_, note)| note.pair.is_none() && note.code == "short");
+    of_all.filter_map(|(_, note)| note.band_rad_s).map(move |ends| ChartSpan { ends, color })
 }
 
 /// Half of the 95 % interval of a magnitude or a phase, as far as it is drawn.

@@ -1,5 +1,9 @@
 //! One flight condition with its two bundles of models, and the flight records that it comes from.
 
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
 use super::{BundleKind, ConditionId, Model};
 use crate::units::number;
 
@@ -323,6 +327,35 @@ pub struct ConditionRecord {
     pub used_s: Vec<[f64; 2]>,
     /// First and last time \[s\] of the part of what the file holds that is this record, on its clock; none for all of it.
     pub part_s: Option<[f64; 2]>,
+    /// What is put right in it alone, by channel.
+    pub remedies: BTreeMap<String, ChannelRemedy>,
+}
+
+/// What is put right of a channel in one record alone, where that contradicts the others (M14.16).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ChannelRemedy {
+    /// How much later than in the other records it is logged \[s\]: taken out.
+    pub delay_s: f64,
+    /// What its samples are multiplied by besides the factor of its unit.
+    pub factor: f64,
+}
+
+impl ChannelRemedy {
+    /// The channel as it was logged.
+    pub const NONE: Self = Self { delay_s: 0.0, factor: 1.0 };
+
+    /// One after the other.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        Self { delay_s: self.delay_s + next.delay_s, factor: self.factor * next.factor }
+    }
+}
+
+impl Default for ChannelRemedy {
+    fn default() -> Self {
+        Self::NONE
+    }
 }
 
 impl ConditionRecord {
@@ -339,6 +372,7 @@ impl ConditionRecord {
             sample_time_s: None,
             used_s: Vec::new(),
             part_s: None,
+            remedies: BTreeMap::new(),
         }
     }
 }

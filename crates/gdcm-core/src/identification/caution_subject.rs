@@ -19,6 +19,35 @@ pub struct CautionNote {
     pub text: String,
 }
 
+impl CautionNote {
+    /// What it says in three words or fewer, for a mark.
+    #[must_use]
+    pub fn mark(&self) -> &'static str {
+        match self.code {
+            "clipped" => "at its limit",
+            "stuck" => "stood still",
+            "coarse" => "coarse steps",
+            "held" => "steps",
+            "copy" => "a copy",
+            "sign" => "other sign",
+            "time-skew" => "logged late",
+            "vibration" => "vibrates",
+            "unit" => "unit in doubt",
+            "inadequate" => "poorly fitted",
+            "not-swept" => "not swept",
+            "collinear-inputs" => "not moved alone",
+            "points" => "leaves the points",
+            "not-identified" => "not identified",
+            "feedback" | "feedback-some" => "gusts fed back",
+            "record" => "contradicts",
+            "gap" => "gaps",
+            "duplicate" => "a duplicate",
+            "resampled" => "resampled",
+            _ => "see the caution",
+        }
+    }
+}
+
 impl IdentificationCaution {
     /// The caution with what it is about.
     #[must_use]
@@ -40,10 +69,14 @@ impl IdentificationCaution {
             }
             Self::UnlikeRecord { name, .. } => record("record", name),
             Self::Contradiction { records, fault, .. } => {
-                let late = fault.as_ref().is_some_and(|fault| fault.delay_s().is_some());
+                let code = match fault {
+                    Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
+                    Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
+                    _ => "record",
+                };
                 let of_channel = fault.as_ref().and_then(RecordFault::signal).map(|signal| signal.name.clone());
                 let name = records.last().map(|(_, name)| name.clone());
-                CautionNote { record: name, channel: of_channel, ..of(if late { "time-skew" } else { "record" }) }
+                CautionNote { record: name, channel: of_channel, ..of(code) }
             }
             Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
             Self::Feedback { .. } => of("feedback-some"),

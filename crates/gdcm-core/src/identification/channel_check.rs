@@ -65,15 +65,27 @@ fn coarseness(samples: &[f64]) -> Option<f64> {
     (deviation > 0.0 && least.is_finite() && even).then_some(least / deviation)
 }
 
+/// The samples of a channel that are numbers.
+fn finite(record: &FlightRecord, signal: &Signal) -> Vec<f64> {
+    record.channel(signal).iter().copied().filter(|x| x.is_finite()).collect()
+}
+
+/// The inputs of a record that stand at their limit, and for which share of it \[%\].
+pub(super) fn inputs_at_limit(record: &FlightRecord, preparation: &Preparation) -> Vec<(Signal, f64)> {
+    let inputs = preparation.channels().filter(|(signal, _)| signal.role == ChannelSide::Input);
+    let clipped = inputs.map(|(signal, _)| {
+        let found = clipping(&finite(record, &signal));
+        (signal, found)
+    });
+    clipped.filter(|(_, found)| found.share > found.most).map(|(signal, found)| (signal, 100.0 * found.share)).collect()
+}
+
 /// What is wrong with the outputs as they were logged, one caution a channel: of the record in which it is worst.
 pub(super) fn output_cautions(records: &[FlightRecord], preparation: &Preparation) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
     for (signal, _) in preparation.channels().filter(|(signal, _)| signal.role == ChannelSide::Output) {
-        let finite = |record: &FlightRecord| -> Vec<f64> {
-            record.channel(&signal).iter().copied().filter(|x| x.is_finite()).collect()
-        };
         let of_records: Vec<(&FlightRecord, Vec<f64>)> =
-            records.iter().map(|record| (record, finite(record))).collect();
+            records.iter().map(|record| (record, finite(record, &signal))).collect();
         let clipped = of_records.iter().map(|(record, samples)| (record, clipping(samples)));
         let clipped = clipped.filter(|(_, clipping)| clipping.share > clipping.most);
         let count = clipped.clone().count();

@@ -60,13 +60,16 @@ impl SchurForm {
 // Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.
 
 /// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
-/// end or fast and slow modes cannot be told apart.
+/// end, fast and slow modes cannot be told apart, or none is slow.
 pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
     let (a, b, c, order) = (model.a(), model.b(), model.c(), model.order());
     let mut schur = SchurForm::of(a)?;
     let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
     if slow == order {
         return Some(model.clone());
+    }
+    if slow == 0 {
+        return None;
     }
     let basis = real_basis(&schur.q, slow);
     let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
@@ -115,6 +118,15 @@ mod tests {
 
     fn sample(size: usize) -> DMatrix<f64> {
         DMatrix::from_fn(size, size, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())
+    }
+
+    #[test]
+    fn a_model_of_fast_modes_alone_has_no_slow_part() {
+        let model = |pole: f64| {
+            StateSpace::new(sample(2).map(|_| 0.0) + DMatrix::identity(2, 2) * pole, sample(2), sample(2), sample(2))
+        };
+        assert!(without_fast_modes(&model(-100.0).unwrap(), 50.0).is_none());
+        assert_eq!(without_fast_modes(&model(-10.0).unwrap(), 50.0).unwrap().order(), 2);
     }
 
     #[test]

@@ -155,9 +155,18 @@ pub struct RecordUse {
     pub used_s: f64,
     /// Gaps, by the time at which they begin.
     pub gaps: Vec<Gap>,
+    /// Inputs that stand at their limit, and for which share of the record \[%\]: a fact, for a saturated actuator is the signal.
+    pub inputs_at_limit: Vec<(Signal, f64)>,
 }
 
 impl RecordUse {
+    /// What is no fault of it, in words.
+    pub fn facts(&self) -> impl Iterator<Item = String> {
+        self.inputs_at_limit.iter().map(|(signal, percent)| {
+            format!("{}: {signal} is at its limit for {percent:.1} % of it, and used as it is", self.record)
+        })
+    }
+
     /// First and last time \[s\] of each part of the record between what was cut out of it.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let cut = || self.gaps.iter().filter(|gap| gap.treatment == Treatment::CutOut);
@@ -381,11 +390,12 @@ fn prepare_record(
         cautions.push(RecordCaution::RecordUnused { record: record.name.clone() });
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
+    let inputs_at_limit = inputs_at_limit(record, preparation);
     let used_s = segments.iter().map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64).sum();
     let (record, sample_time_s, logged_s) = (record.name.clone(), clock.sample_time_s, clock.logged_s());
     Ok(PreparedRecord {
         segments,
-        used: RecordUse { record, sample_time_s, logged_s, used_s, gaps },
+        used: RecordUse { record, sample_time_s, logged_s, used_s, gaps, inputs_at_limit },
         cautions,
         longest_s,
     })

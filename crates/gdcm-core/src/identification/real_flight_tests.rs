@@ -350,6 +350,12 @@ fn assert_cautions_over(seeds: std::ops::Range<u64>) {
     };
     // 192 of 192 in M14.16.
     assert_eq!(with("time-skew", &|seed| said(&late(seed), &options())), count);
+    let turned = |seed: u64| {
+        let mut records = three(seed, calm);
+        records[2].outputs.neg_mut();
+        records
+    };
+    assert_eq!(with("sign", &|seed| said(&turned(seed), &options())), count);
     let clipped = |seed: u64| {
         let mut records = three(seed, calm);
         for record in &mut records {

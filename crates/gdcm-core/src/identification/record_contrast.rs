@@ -12,6 +12,7 @@
 //! What changes when a record is left out blames nobody: it says only that the record carries an axis alone.
 
 use super::*;
+use crate::dataset::ChannelRemedy;
 use crate::executor::each;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::fmt;
@@ -27,6 +28,9 @@ const CONTRADICTS_IN_GUSTS: f64 = 12.0;
 const ALONE: f64 = 1.5;
 /// Share of the greatest gain within which one delay of all outputs goes before another fault.
 const AS_GOOD: f64 = 0.98;
+
+/// How near to -1 a factor is a turned sign: the gain of a turned output was found as -0.98 (M14.16).
+const NEAR_A_SIGN: f64 = 0.3;
 
 /// What is wrong with a record.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +50,21 @@ impl RecordFault {
         match self {
             Self::OutputsLate(_) => None,
             Self::Late(signal, _) | Self::Gain(signal, _) => Some(signal),
+        }
+    }
+
+    /// What puts it right, by channel; a factor near -1 is a sign, and nothing else.
+    #[must_use]
+    pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
+        let late = |delay_s: f64| ChannelRemedy { delay_s, ..ChannelRemedy::NONE };
+        match self {
+            Self::OutputsLate(delay_s) => outputs.iter().map(|output| (output.clone(), late(*delay_s))).collect(),
+            Self::Late(signal, delay_s) => vec![(signal.clone(), late(*delay_s))],
+            Self::Gain(signal, factor) => {
+                let is_sign = (factor + 1.0).abs() < NEAR_A_SIGN;
+                let factor = if is_sign { -1.0 } else { *factor };
+                vec![(signal.clone(), ChannelRemedy { factor, ..ChannelRemedy::NONE })]
+            }
         }
     }
 

@@ -99,15 +99,21 @@ impl LaidOutRecord {
         (Self { table: Arc::new(table), layout, guess, used: true, problems, cautions, flight }, notes)
     }
 
+    /// The same record with other columns for its channels.
+    #[must_use]
+    pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {
+        Self { used: self.used, ..Self::new(Arc::clone(&self.table), layout, self.guess.clone(), channels) }
+    }
+
     /// Its samples, where it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         self.flight.as_ref().filter(|_| self.used)
     }
 
     /// What a dataset says of it: where it is, what its name tells, and the parts of it that an identification used.
-    pub fn entry(&self, found: &RecordUse) -> ConditionRecord {
+    pub fn entry(&self, found: &RecordUse, channels: &RecordChannels) -> ConditionRecord {
         let used_s = self.flight.as_ref().map_or_else(Vec::new, |flight| found.spans(flight));
-        ConditionRecord { used_s, ..self.layout.condition_record(&self.table, &self.guess) }
+        ConditionRecord { used_s, ..self.layout.condition_record(&self.table, &self.guess, channels) }
     }
 }
 

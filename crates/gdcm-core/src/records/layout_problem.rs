@@ -141,6 +141,14 @@ pub enum LayoutProblem {
         /// The factor.
         factor: f64,
     },
+    /// A delay that is none of a sensor or a bus.
+    #[error("{channel}: a delay of {} s in one record is not possible; at most 10 s", number(*delay_s))]
+    Delay {
+        /// The channel.
+        channel: String,
+        /// The delay \[s\].
+        delay_s: f64,
+    },
     /// Samples that no helicopter has in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, and no helicopter more than {} {unit}: the column or its unit is wrong{hint}",

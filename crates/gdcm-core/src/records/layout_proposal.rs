@@ -189,7 +189,7 @@ impl LayoutProposal {
         let said = match channels.said.get(&rule.name) {
             Some(SaidConversion::Factor(factor)) => {
                 self.notes.push(format!("{}: column {quoted}, × {} as asked", rule.name, number(*factor)));
-                return Some(ColumnUse { column, factor: *factor });
+                return Some(ColumnUse::times(column, *factor));
             }
             Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
             None => of_file,
@@ -213,7 +213,7 @@ impl LayoutProposal {
             (true, None) => format!("{}: column {quoted}, taken to be in {from} as the file does not say", rule.name),
             (false, _) => format!("{}: column {quoted}, {from} → {} (× {})", rule.name, rule.unit, number(factor)),
         });
-        Some(ColumnUse { column, factor })
+        Some(ColumnUse::times(column, factor))
     }
 }
 

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::assembly::ChannelRule;
+use crate::dataset::ChannelRemedy;
+use std::collections::BTreeMap;
 
 fn rule(name: &str, unit: &str) -> ChannelRule {
     let unit = unit.to_owned();
@@ -66,7 +68,7 @@ fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
     let flight = proposal.layout.flight_record(&table, &channels).unwrap();
     assert_eq!((flight.time_s[3], flight.inputs[(3, 0)], flight.inputs.shape()), (0.06, 43.0, (60, 2)));
     assert_eq!(flight.outputs[(2, 1)], 9.806_65 * table.columns[0].values[2]);
-    let entry = proposal.layout.condition_record(&table, &RecordGuess::default());
+    let entry = proposal.layout.condition_record(&table, &RecordGuess::default(), &channels);
     assert_eq!((entry.file.as_str(), entry.sha256.as_deref()), ("lon_1.csv", Some("ab")));
     assert!((entry.sample_time_s.unwrap() - 0.02).abs() < 1e-14, "a difference of two stamps");
 }
@@ -145,15 +147,15 @@ fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
     assert!(words.contains("LAT has the unit \"in\" in the file (column \"lateral\") and \"%\" is wanted"), "{words}");
     // What the engineer says stands.
     let mut layout = proposed(&table).layout;
-    layout.outputs = vec![Some(ColumnUse::as_it_is(6)), Some(ColumnUse { column: 0, factor: 9.80665 })];
-    layout.inputs[1] = Some(ColumnUse { column: 2, factor: -8.0 });
+    layout.outputs = vec![Some(ColumnUse::as_it_is(6)), Some(ColumnUse::times(0, 9.80665))];
+    layout.inputs[1] = Some(ColumnUse::times(2, -8.0));
     assert!(told(&layout.problems(&table, &channels())).starts_with("LAT (column \"lateral\") reaches 440 %"));
-    layout.inputs[1] = Some(ColumnUse { column: 2, factor: -2.0 });
+    layout.inputs[1] = Some(ColumnUse::times(2, -2.0));
     assert_eq!(layout.problems(&table, &channels()), []);
     assert_eq!(layout.flight_record(&table, &channels()).unwrap().inputs[(0, 1)], -110.0);
     layout.inputs[1] = Some(ColumnUse::as_it_is(4));
     assert!(told(&layout.problems(&table, &channels())).contains("LAT and LON are both taken from column \"delta_b\""));
-    layout.inputs[1] = Some(ColumnUse { column: 99, factor: f64::NAN });
+    layout.inputs[1] = Some(ColumnUse::times(99, f64::NAN));
     assert!(layout.flight_record(&table, &channels()).is_err());
 }
 
@@ -377,6 +379,50 @@ fn a_mark_before_the_name_of_a_column_turns_its_sign() {
     let mut channels = channels();
     channels.outputs[1].aliases = vec!["-nz".to_owned()];
     let found = RecordLayout::proposed(&record(), &channels, &TimeWish::default());
-    assert_eq!(found.layout.outputs[1], Some(ColumnUse { column: 0, factor: -9.806_65 }), "{found:?}");
+    assert_eq!(found.layout.outputs[1], Some(ColumnUse::times(0, -9.806_65)), "{found:?}");
     assert!(found.notes.contains(&"NZ: the sign of column \"nz\" is turned, as asked".to_owned()), "{:?}", found.notes);
+}
+
+#[test]
+fn what_is_put_right_in_one_record_is_put_right_in_it_alone() {
+    let (table, channels) = (record(), channels());
+    let as_logged = proposed(&table).layout;
+    let mut layout = as_logged.clone();
+    let remedies = BTreeMap::from([
+        ("LON".to_owned(), ChannelRemedy { delay_s: 0.03, factor: 1.0 }),
+        ("P".to_owned(), ChannelRemedy { delay_s: 0.0, factor: -1.0 }),
+    ]);
+    layout.put_right(&remedies, &channels);
+    let [before, after] = [&as_logged, &layout].map(|layout| layout.flight_record(&table, &channels).unwrap());
+    // LON is 40 + k at 0.02 k: 30 ms later it is 1.5 more, and there is nothing beyond the end.
+    assert!((after.inputs[(10, 0)] - 51.5).abs() < 1e-12, "{}", after.inputs[(10, 0)]);
+    assert!(after.inputs[(58, 0)].is_nan() && after.inputs[(57, 0)].is_finite());
+    assert_eq!(after.outputs.column(0), -before.outputs.column(0));
+    assert_eq!((after.inputs.column(1), after.outputs.column(1)), (before.inputs.column(1), before.outputs.column(1)));
+    // It is kept with the record, goes to no other, and stays where other columns are said.
+    let entry = layout.condition_record(&table, &RecordGuess::default(), &channels);
+    assert_eq!(entry.remedies, remedies);
+    let other = as_logged.carried_to(&table, &table).unwrap().with_remedies_of(&layout);
+    assert_eq!(other, layout);
+    // Twice adds up.
+    layout.put_right(&remedies, &channels);
+    let twice = layout.flight_record(&table, &channels).unwrap();
+    assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);
+}
+
+#[test]
+fn a_line_is_drawn_over_no_gap_and_a_delay_is_short() {
+    let mut table = record();
+    for sample in 30..60 {
+        table.columns[1].values[sample] += 1.0;
+    }
+    let (channels, mut layout) = (channels(), proposed(&table).layout);
+    let late = |delay_s: f64| BTreeMap::from([("LON".to_owned(), ChannelRemedy { delay_s, factor: 1.0 })]);
+    layout.put_right(&late(0.03), &channels);
+    let flight = layout.flight_record(&table, &channels).unwrap();
+    assert!(
+        flight.inputs[(28, 0)].is_nan() && flight.inputs[(27, 0)].is_finite() && flight.inputs[(30, 0)].is_finite()
+    );
+    layout.put_right(&late(1e300), &channels);
+    assert_eq!(layout.problems(&table, &channels).len(), 1, "{:?}", layout.problems(&table, &channels));
 }

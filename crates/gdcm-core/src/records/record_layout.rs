@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor};
-use crate::dataset::{Channel, ConditionRecord, Dataset};
+use crate::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
 use crate::identification::FlightRecord;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
@@ -14,12 +14,24 @@ pub struct ColumnUse {
     pub column: usize,
     /// How many of the channel's units one of the column's is; negative where the sign is the other one.
     pub factor: f64,
+    /// What is put right in this record alone.
+    pub remedy: ChannelRemedy,
 }
 
 impl ColumnUse {
     /// The column as it is.
     pub fn as_it_is(column: usize) -> Self {
-        Self { column, factor: 1.0 }
+        Self::times(column, 1.0)
+    }
+
+    /// The column times a factor.
+    pub fn times(column: usize, factor: f64) -> Self {
+        Self { column, factor, remedy: ChannelRemedy::NONE }
+    }
+
+    /// What its samples are multiplied by in all.
+    pub(super) fn gain(&self) -> f64 {
+        self.factor * self.remedy.factor
     }
 }
 
@@ -126,10 +138,37 @@ impl RecordLayout {
         let rows: Vec<usize> = (0..time_s.len()).filter(|row| is_of_part(&time_s[*row])).collect();
         FlightRecord {
             name: table.name.clone(),
-            inputs: samples_of(table, &self.inputs, &rows),
-            outputs: samples_of(table, &self.outputs, &rows),
+            inputs: samples_of(table, &self.inputs, (&time_s, &rows)),
+            outputs: samples_of(table, &self.outputs, (&time_s, &rows)),
             time_s: rows.into_iter().map(|row| time_s[row]).collect(),
         }
+    }
+
+    /// Each channel with what was put right of it in the record that `other` is of.
+    #[must_use]
+    pub fn with_remedies_of(mut self, other: &Self) -> Self {
+        let sides = [(&mut self.inputs, &other.inputs), (&mut self.outputs, &other.outputs)];
+        let pairs = sides.into_iter().flat_map(|(uses, others)| uses.iter_mut().zip(others));
+        for (used, other) in pairs.filter_map(|(used, other)| used.as_mut().zip(*other)) {
+            used.remedy = other.remedy;
+        }
+        self
+    }
+
+    /// Puts channels right in this record alone, by their names, besides what was put right before.
+    pub fn put_right(&mut self, remedies: &BTreeMap<String, ChannelRemedy>, channels: &RecordChannels) {
+        let sides = [(&channels.inputs, &mut self.inputs), (&channels.outputs, &mut self.outputs)];
+        for (rule, used) in sides.into_iter().flat_map(|(rules, uses)| rules.iter().zip(uses)) {
+            if let Some((used, remedy)) = used.as_mut().zip(remedies.get(&rule.name)) {
+                used.remedy = used.remedy.then(*remedy);
+            }
+        }
+    }
+
+    /// How a channel is used, to change.
+    pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
+        let uses = if role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
+        uses.get_mut(index)?.as_mut()
     }
 
     /// The same columns, by name, of another record; none where that lacks one of them.
@@ -157,8 +196,17 @@ impl RecordLayout {
     }
 
     /// What a dataset says of this record: where it is, and what its name tells.
-    pub fn condition_record(&self, table: &RecordTable, guess: &RecordGuess) -> ConditionRecord {
+    pub fn condition_record(
+        &self,
+        table: &RecordTable,
+        guess: &RecordGuess,
+        channels: &RecordChannels,
+    ) -> ConditionRecord {
+        let sides = [(&channels.inputs, &self.inputs), (&channels.outputs, &self.outputs)];
+        let used = sides.into_iter().flat_map(|(rules, uses)| chosen(rules, uses));
+        let remedied = used.filter(|(_, used)| used.remedy != ChannelRemedy::NONE);
         ConditionRecord {
+            remedies: remedied.map(|(rule, used)| (rule.name.clone(), used.remedy)).collect(),
             variable: table.source.variable.clone(),
             sha256: Some(table.source.sha256.clone()).filter(|hash| !hash.is_empty()),
             kind: guess.kind,
@@ -214,8 +262,12 @@ fn chosen<'r>(rules: &'r [ChannelRule], uses: &[Option<ColumnUse>]) -> Vec<(&'r 
 
 fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
     let (channel, column) = (rule.name.clone(), table.quoted(used.column));
-    if !used.factor.is_finite() || used.factor == 0.0 {
-        return Some(LayoutProblem::Factor { channel, factor: used.factor });
+    if !used.gain().is_finite() || used.gain() == 0.0 {
+        return Some(LayoutProblem::Factor { channel, factor: used.gain() });
+    }
+    let delay_s = used.remedy.delay_s;
+    if !(-LONGEST_DELAY_S..=LONGEST_DELAY_S).contains(&delay_s) {
+        return Some(LayoutProblem::Delay { channel, delay_s });
     }
     let range = table.columns.get(used.column).and_then(|column| column.range());
     if range.is_none() { Some(LayoutProblem::Empty { channel, column }) } else { magnitude(table, rule, used) }
@@ -240,19 +292,51 @@ fn same_samples(first: &[f64], second: &[f64]) -> bool {
 }
 
 /// The samples of these rows, one column a channel; not a number where a sample is missing.
-fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>], rows: &[usize]) -> DMatrix<f64> {
+fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>], (time_s, rows): (&[f64], &[usize])) -> DMatrix<f64> {
     let mut samples = DMatrix::from_element(rows.len(), uses.len(), f64::NAN);
     for (mut into, used) in samples.column_iter_mut().zip(uses) {
         let Some((column, used)) = used.and_then(|used| Some((table.columns.get(used.column)?, used))) else {
             continue;
         };
-        let values = rows.iter().map(|row| column.values.get(*row).copied().unwrap_or(f64::NAN));
+        let advanced = (used.remedy.delay_s != 0.0).then(|| advanced(time_s, &column.values, used.remedy.delay_s));
+        let values = advanced.as_deref().unwrap_or(&column.values);
+        let values = rows.iter().map(|row| values.get(*row).copied().unwrap_or(f64::NAN));
         for (sample, value) in into.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-            *sample = if used.factor == 1.0 { value } else { value * used.factor };
+            *sample = if used.gain() == 1.0 { value } else { value * used.gain() };
         }
     }
     samples
 }
+
+/// A channel that is logged late by `delay_s`, as it was: at t the straight line at t + delay between two samples next to one
+/// another; not a number beyond the ends, beside a sample that is missing, and in a gap of the stamps.
+fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
+    let longest_s = LONGEST_LINE * median_step(time_s).unwrap_or(0.0);
+    let mut next = 0;
+    let at = |t: f64| {
+        if !t.is_finite() {
+            return f64::NAN;
+        }
+        while next < time_s.len() && (time_s[next] <= t || time_s[next].is_nan()) {
+            next += 1;
+        }
+        let Some(before) = next.checked_sub(1) else { return f64::NAN };
+        let value = |row: usize| values.get(row).copied().unwrap_or(f64::NAN);
+        if time_s[before] == t {
+            return value(before);
+        }
+        let Some(after) = time_s.get(next) else { return f64::NAN };
+        let step = after - time_s[before];
+        let part = (t - time_s[before]) / step;
+        if step <= longest_s { value(before) + part * (value(next) - value(before)) } else { f64::NAN }
+    };
+    time_s.iter().map(|t| t + delay_s).map(at).collect()
+}
+
+/// The longest delay that is one of a sensor or a bus \[s\].
+const LONGEST_DELAY_S: f64 = 10.0;
+/// The longest line between two samples, over the median step: gaps of three samples, as where records are prepared (M14.1).
+const LONGEST_LINE: f64 = 4.5;
 
 // What samples can be in a unit, and what they cannot.
 
@@ -274,7 +358,7 @@ pub(super) fn magnitude(table: &RecordTable, rule: &ChannelRule, used: ColumnUse
     // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
     let column = table.columns.get(used.column).filter(|column| column.meaning.is_none())?;
     let (least, most) = column.range()?;
-    let value = least.abs().max(most.abs()) * used.factor.abs();
+    let value = least.abs().max(most.abs()) * used.gain().abs();
     let unit = PhysicalUnit::of(&rule.unit)?;
     let (_, limit, of) = MOST.into_iter().find(|(dimension, ..)| *dimension == unit.dimension)?;
     let limit = limit * conversion_factor(of, &rule.unit)?;

@@ -72,10 +72,11 @@ impl Resampling {
         let mut held = Vec::new();
         let topics = chosen.iter().map(|(side, rule, used, column)| {
             let stamps = column.topic.as_ref().map_or(&of_table, |topic| &topic.time_s);
-            let values: Vec<f64> = column.values.iter().map(|value| value * used.factor).collect();
+            let stamps: Vec<f64> = stamps.iter().map(|time| time - used.remedy.delay_s).collect();
+            let values: Vec<f64> = column.values.iter().map(|value| value * used.gain()).collect();
             let holds = *side == ChannelSide::Input && (wish.held.contains(&rule.name) || is_held(&values));
             held.extend(holds.then(|| rule.name.clone()));
-            Topic::new(&rule.name, stamps, &values, holds)
+            Topic::new(&rule.name, &stamps, &values, holds)
         });
         let topics: Result<Vec<Topic>, TopicError> = topics.collect();
         Some(topics.and_then(|topics| {

@@ -7,9 +7,9 @@ use gdcm_core::dataset::limits::{
     MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
 use gdcm_core::dataset::{
-    BandsDraft, BundleKind, Channel, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset, DatasetDraft,
-    Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft,
-    Timing,
+    BandsDraft, BundleKind, Channel, ChannelRemedy, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset,
+    DatasetDraft, Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray,
+    ResponseDraft, Timing,
 };
 use gdcm_core::whole_number::{whole, whole_or_none};
 use nalgebra::DMatrix;
@@ -114,6 +114,8 @@ pub(crate) struct RecordText {
     pub(super) used_s: Option<Limited<[f64; 2], MOST_PIECES>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) part_s: Option<[f64; 2]>,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub(super) remedies: BTreeMap<String, ChannelRemedy>,
 }
 
 /// A model: of a dataset, of the models of any file (`gdcm-models`) or of identified ones (`gdcm-identified`).
@@ -350,15 +352,27 @@ impl RecordText {
             sample_time_s: self.sample_time_s,
             used_s: Limited::entries(self.used_s),
             part_s: self.part_s,
+            remedies: self.remedies,
         })
     }
 
     /// A record, as files say it.
     pub(crate) fn of(record: &ConditionRecord) -> Self {
-        let ConditionRecord { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s } =
-            record.clone();
+        let ConditionRecord {
+            name,
+            file,
+            variable,
+            sha256,
+            kind,
+            held_out,
+            used,
+            sample_time_s,
+            used_s,
+            part_s,
+            remedies,
+        } = record.clone();
         let (kind, used, used_s) = (Some(kind.word().to_owned()), Some(used), Limited::some(used_s));
-        Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s }
+        Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s, remedies }
     }
 }
 

@@ -164,7 +164,11 @@ impl<'a> ConditionSource<'a> {
             };
         let corrected = |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
         let variant = self.variant.and_then(|(name, result)| {
-            of(result, (CurveId::Variant, Role::Variant), &format!("under variant {name}"), &result.correction)
+            let mut model = of(result, (CurveId::Variant, Role::Variant), "corrected", &result.correction)?;
+            // The chip says whose decisions these are; which model represents stands in its detail.
+            model.curve.detail = format!("{}; {}", model.curve.label, model.curve.detail);
+            model.curve.label = format!("variant {name}");
+            Some(model)
         });
         let own = corrected(CurveId::Corrected, Role::Corrected, "corrected", &analysis.correction);
         let scheduled = self.schedule.and_then(|schedule| {

@@ -119,18 +119,21 @@ fn report(
     let Refinement { search, fit, likelihood, .. } = refinement;
     let executor = likelihood.executor;
     let systems = fit.systems(likelihood).ok_or_else(no_model)?;
-    let freedom = likelihood.freedom(fit.model.order());
-    let spare = freedom.checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0).ok_or_else(no_model)?;
-    let mut system = NormalSystem::zero(fit.model.parameters());
-    systems.iter().for_each(|part| system.add(part));
-    let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).ok_or_else(no_model)?;
+    let covariance = ParameterCovariance::of(likelihood, fit, &systems, fit.cost).ok_or_else(no_model)?;
+    // By way of a reference the cost says nothing: what is known is what the lines as logged tell of this model (M14.15).
+    let logged = match &data.direct {
+        Some(direct) => Some(ParameterCovariance::of_lines(direct, fit).ok_or_else(no_model)?),
+        None => None,
+    };
+    let known = logged.as_ref().unwrap_or(&covariance);
     // By way of a reference nothing is fed back, and every record is seen as the same reference shows it.
     let is_direct = options.references == 0;
     let feedback =
         Some(()).filter(|()| is_direct).and_then(|()| Feedback::of(data, &fit.model, options.band, executor));
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
-    let bands = covariance.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;
+    let bands = known.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;
+    let bands = if is_direct { bands } else { data.measured.widened(&bands).ok_or_else(no_model)? };
     let not_identified = not_identified(&bands);
 
     progress.next(0.88, "models without each record")?;
@@ -194,7 +197,7 @@ fn report(
         unrefined: of_order(UNREFINED, unrefined).ok_or_else(no_model)?,
         bundle,
         measured: data.measured.in_units(&data.scales),
-        poles: covariance.poles(&fit.model, options.band[0]),
+        poles: known.poles(&fit.model, options.band[0]),
         stabilisation: proposal.stabilisation,
         laguerre_pole: proposal.laguerre_pole,
         past: proposal.past,

@@ -5,13 +5,15 @@
 //!    h = max(0.45, 0.15 omega);  S = the block of (F'F)^-1 of R
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
 //! 3  the cost of M14.4 with U = Gamma_u R, Y = Gamma_y R, Gamma straight between points, on the lines of leverage R S R' < 0.5
-//! 4  only where the coherence of an input with R is 0.6: elsewhere the reference did not excite
+//! 4  bands: the standard deviations that the lines as logged give of this model, over sqrt(coherence of the input with R)
+//! 5  only where the coherence of an input with R is 0.6: elsewhere the reference did not excite
 //! ```
 //!
 //! The ends of a chirp's band, where its smooth spectrum and the transient look alike, are what the leverage leaves out. The cost per degree of freedom is
 //! far below 1 and says nothing.
 
 use super::*;
+use crate::dataset::{ModelBands, PairTable};
 use crate::executor::Executor;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -21,6 +23,9 @@ const HALF_WIDTH: f64 = 0.15;
 const TOLERANCE: f64 = 1e-3;
 /// Leverage of a line from which it is left out.
 const LEVERAGE: f64 = 0.5;
+
+/// Below this coherence a band is not widened any more: nothing is known there as it is.
+const LEAST_COHERENCE: f64 = 0.01;
 
 /// What the reference shows of inputs and outputs at one frequency.
 struct InstrumentPoint {
@@ -92,6 +97,28 @@ impl InstrumentPoint {
             response,
         };
         Self { omega: estimate.omega, gamma, spread, estimate }
+    }
+}
+
+impl ResponseEstimate {
+    /// Bands of what was logged, over the root of the coherence of each input with the reference: what the reference does not show
+    /// is known the less (M14.15).
+    pub(super) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
+        let widened = |table: &PairTable<Vec<f64>>| {
+            PairTable::from_fn(table.outputs(), table.inputs(), |pair| {
+                let coherence = |omega: f64| {
+                    let after = self.points.partition_point(|point| point.omega <= omega).min(self.points.len() - 1);
+                    let before = after.saturating_sub(1);
+                    let at = |index: usize| self.points[index].partial_coherence[(pair.output, pair.input)];
+                    let (from, to) = (self.points[before].omega, self.points[after].omega);
+                    let share = if to > from { ((omega - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+                    (1.0 - share) * at(before) + share * at(after)
+                };
+                let sds = table[pair].iter().zip(bands.omega());
+                sds.map(|(sd, omega)| sd / coherence(*omega).clamp(LEAST_COHERENCE, 1.0).sqrt()).collect()
+            })
+        };
+        ModelBands::new(bands.omega().to_vec(), widened(bands.sd_db()), widened(bands.sd_deg())).ok()
     }
 }
 

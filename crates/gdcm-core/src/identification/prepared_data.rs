@@ -34,6 +34,8 @@ pub(super) struct PreparedData<'a> {
     pub(super) measured: ResponseEstimate,
     /// The cost over the records of the fit.
     pub(super) likelihood: Likelihood<'a>,
+    /// The same of the lines as they were logged, where those of the fit are seen by way of a reference (M14.15).
+    pub(super) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
     pub(super) held_out: Likelihood<'a>,
     /// Highest line used \[rad/s\].
@@ -76,8 +78,14 @@ impl<'a> PreparedData<'a> {
         let length = RecordLength::of(&segments, options);
         length.check(&narrow)?;
         let first = wide.iter().filter_map(|lines| lines.omega.first().copied()).fold(highest, f64::min);
-        let (measured, narrow) = if options.references == 0 {
-            (local_polynomial(&wide, &log_spaced(first, highest, MEASURED_POINTS), executor)?, narrow)
+        let logged = || local_polynomial(&wide, &log_spaced(first, highest, MEASURED_POINTS), executor);
+        let likelihood = |spectra: &[Spectrum], measured: &ResponseEstimate| {
+            let noise = NoiseCovariance::of(measured).ok_or(IdentificationError::OutputsDepend)?;
+            let segments: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
+            segments.map(|segments| Likelihood { segments, executor }).ok_or(IdentificationError::OutputsDepend)
+        };
+        let (measured, narrow, direct) = if options.references == 0 {
+            (logged()?, narrow, None)
         } else {
             let driven = segments.iter().zip(references).map(|(segment, reference)| driven(segment, reference));
             let driven: Vec<Segment> = driven.collect();
@@ -85,16 +93,11 @@ impl<'a> PreparedData<'a> {
             let seen = lines.of(&driven.iter().map(|segment| scales.scaled(segment)).collect::<Vec<_>>(), executor);
             let outputs = options.preparation.outputs.len();
             let instrument = Instrument::of(&seen, [lowest, highest], outputs, executor)?;
-            (instrument.measured, instrument.spectra)
-        };
-        let noise = NoiseCovariance::of(&measured).ok_or(IdentificationError::OutputsDepend)?;
-        let likelihood = |spectra: &[Spectrum]| {
-            let segments: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
-            segments.map(|segments| Likelihood { segments, executor }).ok_or(IdentificationError::OutputsDepend)
+            (instrument.measured, instrument.spectra, Some(likelihood(&narrow, &logged()?)?))
         };
         let (fit, held_out) = (
-            likelihood(&narrow)?,
-            likelihood(&LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor))?,
+            likelihood(&narrow, &measured)?,
+            likelihood(&LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor), &measured)?,
         );
 
         progress.next(0.07, "low-pass")?;
@@ -123,6 +126,7 @@ impl<'a> PreparedData<'a> {
             spectra: narrow,
             measured,
             likelihood: fit,
+            direct,
             held_out,
             highest,
             cautions,

@@ -427,4 +427,23 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
     let mended = identify(&[quadrotor(SWEEP, true)], &with_reference, &Sequential, &Unobserved).unwrap();
     let error = |found: &Identification| (magnitudes_db(found)[1] - 30.8).abs();
     assert!(error(&mended) < 0.8 && error(&found) > error(&mended), "{} {}", error(&mended), error(&found));
+    // The bands are those of the lines as logged (M14.15): they hold what the binary sequence tells, known to 0.7 dB itself.
+    let bands = mended.refined.bands.clone().unwrap();
+    let (omega, by_reference) = (bands.omega(), &bands.sd_db()[Pair { output: 0, input: 0 }]);
+    for (at, found, expected) in [(5.0, magnitudes_db(&mended)[0], 35.9), (8.0, magnitudes_db(&mended)[1], 30.8)] {
+        let sd = by_reference[omega.partition_point(|omega| *omega < at)];
+        assert!((found - expected).abs() < 1.96 * sd + 0.7, "{at} rad/s: {found}, not {expected}, sd {sd} dB");
+    }
+    // Where the reference does not excite, little is known.
+    let coherence = |omega: &f64| {
+        let nearest = |point: &&EstimatePoint| (point.omega / omega).ln().abs();
+        let near = mended.measured.points.iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b))).unwrap();
+        near.partial_coherence[(0, 0)]
+    };
+    let of = |shown: bool| {
+        let chosen = omega.iter().zip(by_reference).filter(|(at, _)| (coherence(at) >= 0.6) == shown);
+        let mut sds: Vec<f64> = chosen.map(|(_, sd)| *sd).collect();
+        crate::response::median(&mut sds)
+    };
+    assert!(of(false) > of(true), "{} {}", of(false), of(true));
 }

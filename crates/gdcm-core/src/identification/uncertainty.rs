@@ -54,6 +54,22 @@ impl ParameterCovariance {
         Some(Self { covariance: &root * root.transpose() * dispersion, information: &system.matrix / dispersion })
     }
 
+    /// That of a fit with these normal systems and this cost, per degree of freedom that the parameters leave; none where they leave none.
+    pub(super) fn of(likelihood: &Likelihood, fit: &Fit, systems: &[NormalSystem], cost: f64) -> Option<Self> {
+        let freedom = likelihood.freedom(fit.model.order());
+        let spare = freedom.checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0)?;
+        let mut system = NormalSystem::zero(fit.model.parameters());
+        systems.iter().for_each(|part| system.add(part));
+        Self::new(&system, cost / spare as f64)
+    }
+
+    /// What other lines than those of a fit tell of its model.
+    pub(super) fn of_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
+        let parts = likelihood.parts(&fit.model)?;
+        let systems = normal_systems(likelihood, &fit.model, &parts)?;
+        Self::of(likelihood, fit, &systems, parts.iter().map(|part| part.cost).sum())
+    }
+
     /// The cost over other records where the model may move within its uncertainty (M14.17): `r'r - r'J (G/phi + J'J)^-1 J'r`.
     pub(super) fn moved_cost(&self, records: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Option<f64> {
         let mut system = NormalSystem::zero(model.parameters());

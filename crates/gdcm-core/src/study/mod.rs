@@ -14,6 +14,7 @@ mod derivation;
 mod edit;
 mod engine;
 mod execution;
+mod fitted_couplings;
 mod identify_job;
 mod job;
 mod lead_compensation;
@@ -44,6 +45,7 @@ pub use derivation::{Derivation, ExplainTarget, derivation};
 pub use edit::*;
 pub use engine::*;
 pub use execution::*;
+pub use fitted_couplings::*;
 pub use identify_job::*;
 pub use job::*;
 pub use lead_compensation::*;
@@ -58,5 +60,7 @@ pub use substitutions::*;
 pub use table::*;
 pub use uncertainty::*;
 
+#[cfg(test)]
+mod coupled_analysis_tests;
 #[cfg(test)]
 mod couplings_example_tests;

@@ -11,6 +11,7 @@ use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJo
 
 use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
+use crate::view::views::overlay_job;
 use crate::view::{Background, Need, State, View};
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
@@ -182,7 +183,8 @@ impl GdcmApp {
     pub(super) fn want_jobs(&mut self) {
         let state = &self.state;
         let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
-        self.needs = shown.flat_map(|view| (view.kind().needs)(state)).collect();
+        let of_views = shown.flat_map(|view| (view.kind().needs)(state));
+        self.needs = of_views.chain(overlay_job(state).map(Need::Variant)).collect();
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }

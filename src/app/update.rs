@@ -37,12 +37,13 @@ impl GdcmApp {
 
     /// Carries out the commands of one frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
-        let pointed_before = (self.state.display.hovered.take(), self.state.display.curves.cursor.take());
+        let display = &mut self.state.display;
+        let before = (display.hovered.take(), display.hovered_condition.take(), display.curves.cursor.take());
         for command in commands {
             self.carry_out_one(command);
         }
         let display = &self.state.display;
-        if (&display.hovered, display.curves.cursor) != (&pointed_before.0, pointed_before.1) {
+        if (&display.hovered, display.hovered_condition, display.curves.cursor) != (&before.0, before.1, before.2) {
             self.ctx.request_repaint();
         }
     }
@@ -71,6 +72,7 @@ impl GdcmApp {
             }
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
+            Command::HoverCondition(condition) => display.hovered_condition = Some(condition),
             Command::Isolate(model) => {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }
@@ -104,6 +106,7 @@ impl GdcmApp {
             Command::Explain(asked) => display.asked = asked,
             Command::ShowZeros(shown) => display.show_zeros = shown,
             Command::ShowBars(shown) => display.hide_bars = !shown,
+            Command::Overlay(variant) => display.overlaid = variant,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
             Command::ShowAcross(role) => {
                 display.across_role = role;

@@ -10,7 +10,7 @@ use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::palette::{self, Palette};
 use crate::view::records::RecordsCommand;
 use crate::view::start_page::OpensWith;
-use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, sheet_ui};
+use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, restore_panel_size, sheet_ui};
 use crate::view::{
     answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, reasons, start_page,
 };
@@ -306,6 +306,7 @@ impl GdcmApp {
         // The name of a panel says for which windows its width was dragged.
         let (name, width) = if is_wide { ("answer", 352.0) } else { ("answer beside the rail", 320.0) };
         let side = Frame::new().fill(palette.panel);
+        restore_panel_size(ui, name);
         let panel = Panel::right(name).frame(side).default_size(width).size_range(300.0..=520.0);
         panel.show(ui, |ui| steady_ui(ui, |ui| answer_panel::answer_ui(ui, state, palette, commands)));
         let middle = Frame::new();
@@ -327,6 +328,7 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
         panel.show(ui, |ui| scrolled(ui, "rail", |ui| conditions_panel::rail_ui(ui, state, palette, commands)));
         return;
     }
+    restore_panel_size(ui, "conditions and models");
     let panel = Panel::left("conditions and models").frame(side).default_size(272.0).size_range(240.0..=420.0);
     panel.show(ui, |ui| {
         steady_ui(ui, |ui| {

@@ -49,6 +49,12 @@ pub enum Command {
         after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force"
     )]
     Report(Box<ReportArguments>),
+    /// Ask the models of every condition what a qualification asks: bandwidth and phase delay, summary costs, modes; write
+    /// requirements.json and requirements.csv, and print a short table. This is no qualification.
+    #[command(
+        after_help = "Examples:\n  gdcm requirements example-dataset.json --reject-suggested --out requirements\n  gdcm requirements flight.gdcm-study.json --phase lead --out requirements --force"
+    )]
+    Requirements(Box<RequirementsArguments>),
     /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
     #[command(
         after_help = "Examples:\n  gdcm export flight.gdcm-study.json --as py --out corrections.py\n  gdcm export example-dataset.json --as state-space --condition 3 --out models.mat"
@@ -330,6 +336,20 @@ pub struct ReportArguments {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Overwrite a file that is there already.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// What is asked what a qualification asks, and where the answers go.
+#[derive(Debug, Args)]
+pub struct RequirementsArguments {
+    /// What is to be analysed, and how.
+    #[command(flatten)]
+    pub study: StudyArguments,
+    /// Directory for requirements.json and requirements.csv; made where there is none.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Overwrite files that are there already.
     #[arg(long)]
     pub force: bool,
 }

@@ -51,7 +51,7 @@ fn figure_of_condition(
         return Ok(None);
     };
     let schedule = analysis.schedule.as_ref().ok();
-    let source = ConditionSource { study, analysis: Some(result), schedule, curves: &curves };
+    let source = ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None };
     Ok(request.figure(Some(analysis), Some(&source)))
 }
 

@@ -30,7 +30,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let mut destination = Destination::asked(arguments)?;
     let band = band(arguments, destination.as_ref())?;
     let mut channels = channels(arguments, destination.as_ref(), band)?;
-    let Tasks { tasks, unread, reading } = tasks(arguments, destination.as_ref(), &mut channels, band)?;
+    let Tasks { tasks, unread, reading, copies } = tasks(arguments, destination.as_ref(), &mut channels, band)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
     let dataset = destination.iter().map(|of| of.path.as_path());
     outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
@@ -51,6 +51,9 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         let late = destination.as_ref().and_then(|of| task.late_channel(&found, &of.dataset));
         let of_task: Vec<CautionNote> = found.cautions.iter().map(IdentificationCaution::note).chain(late).collect();
         cautions.extend(of_task.iter().map(|of| (task.condition, of.text.clone())));
+        let is_here = |name: &str| task.records.iter().any(|record| record.table.name == name);
+        let copies = copies.iter().filter(|(first, _)| is_here(first)).map(|(_, note)| note.clone());
+        let of_task: Vec<CautionNote> = of_task.into_iter().chain(copies).collect();
         let of_model = without_references(&channels, arguments);
         of_use |= (0..of_model.inputs.len()).any(|input| is_identified(&found, input, of_model.outputs.len()));
         make_directory(&arguments.out)?;
@@ -171,6 +174,8 @@ struct Tasks {
     unread: Vec<PathBuf>,
     /// What was chosen and done while the records were read.
     reading: Vec<String>,
+    /// Records that are others under second names: the name of the other, and what was said.
+    copies: Vec<(String, CautionNote)>,
 }
 
 /// What is to be identified: all records together, or those of each condition.
@@ -180,7 +185,7 @@ fn tasks(
     channels: &mut RecordChannels,
     band: Band,
 ) -> Result<Tasks, Failure> {
-    let ReadRecords { mut records, unread, reading } = laid_out(arguments, channels)?;
+    let ReadRecords { mut records, unread, reading, copies } = laid_out(arguments, channels)?;
     hold_out(&arguments.hold_out, &mut records)?;
     let mut preparation = preparation(channels, &arguments.delay)?;
     hold(&mut preparation, &records, channels);
@@ -195,7 +200,7 @@ fn tasks(
         }
     };
     let tasks = groups.into_iter().map(|group| IdentificationTask::new(group, &preparation, band, arguments));
-    Ok(Tasks { tasks: tasks.collect::<Result<_, _>>()?, unread, reading })
+    Ok(Tasks { tasks: tasks.collect::<Result<_, _>>()?, unread, reading, copies })
 }
 
 /// Where what was found is written: a file for each condition where there are many.

@@ -17,7 +17,7 @@ pub struct IdentifyArguments {
     /// Flight records of one condition, or with --every-condition of many: files, or folders with all that is in them (text, MATLAB, NumPy, JSON, zip; logs of PX4, ArduPilot and Betaflight).
     #[arg(value_name = "RECORD", required = true)]
     pub records: Vec<PathBuf>,
-    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, CHANNEL [UNIT] or CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
+    /// Inputs, separated by commas (LON,LAT), each as CHANNEL, its unit behind it in square brackets where that is to be said, or as CHANNEL=COLUMN (its name, in quotation marks where it has a comma, or #3 for the third column); without it, those of the dataset.
     #[arg(long, value_name = "NAMES", required_unless_present = "into")]
     pub inputs: Option<ChannelList>,
     /// Outputs, in the same way.

@@ -13,6 +13,7 @@ mod identify;
 mod identify_arguments;
 mod models;
 mod read_record;
+mod requirements;
 mod study_options;
 mod summary;
 mod terminal;
@@ -43,7 +44,7 @@ use text_table::{by_words, indented, labelled, listed, listed_conditions};
 
 pub use arguments::{
     AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, ReportArguments, SaidSign, StudyArguments,
+    PairList, Rejection, ReportArguments, RequirementsArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
 pub use identify_arguments::{
@@ -105,6 +106,7 @@ pub fn run(command: &Command) -> ExitCode {
         Command::Analyze(arguments) => analyze::analyze(arguments),
         Command::Figure(arguments) => figure::figure(arguments),
         Command::Report(arguments) => analyze::report(arguments),
+        Command::Requirements(arguments) => requirements::requirements(arguments),
         Command::Export(arguments) => export::export(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),

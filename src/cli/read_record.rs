@@ -3,8 +3,10 @@
 use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 
+use gdcm_core::identification::CautionNote;
 use gdcm_core::records::{
-    LaidOutRecord, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step, with_topics_joined,
+    LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step,
+    with_topics_joined,
 };
 use gdcm_core::study::Table;
 use gdcm_core::units::telling;
@@ -20,6 +22,8 @@ pub(super) struct ReadRecords {
     pub(super) unread: Vec<PathBuf>,
     /// What was chosen and done while they were read.
     pub(super) reading: Vec<String>,
+    /// Records that are others under second names: the name of the other, and what is said.
+    pub(super) copies: Vec<(String, CautionNote)>,
 }
 
 /// Reads the records; what was chosen, and what is wrong, is told on standard error.
@@ -65,16 +69,22 @@ pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChann
         record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
     }
     leave_out_copies(&mut records);
+    let mut copies = Vec::new();
     for copy in records.iter().filter(|record| !record.used) {
-        let why = copy.cautions.last().map(ToString::to_string).unwrap_or_default();
-        caution(&format!("{}: {why}", copy.table.name));
+        for why in &copy.cautions {
+            let LayoutCaution::Copy { first } = why else { continue };
+            let (record, text) = (copy.table.name.clone(), format!("{}: {why}", copy.table.name));
+            caution(&text);
+            let note = CautionNote { code: "duplicate", record: Some(record), text, ..CautionNote::default() };
+            copies.push((first.clone(), note));
+        }
     }
     records.retain(|record| record.used);
     let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
     if wrong > 0 {
         Err(Failure::Records { wrong, of: records.len() })
     } else {
-        Ok(ReadRecords { records, unread, reading })
+        Ok(ReadRecords { records, unread, reading, copies })
     }
 }
 

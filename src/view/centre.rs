@@ -11,7 +11,7 @@ use super::palette::{TITLE_SIZE, medium};
 use super::start_page::example_line_ui;
 use super::{
     BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui, named,
-    named_switch, region_ui,
+    named_switch, region_ui, restore_panel_size,
 };
 
 /// Height of the bar of the views \[pt\].
@@ -246,6 +246,7 @@ fn dock_ui(ui: &mut Ui, state: &mut State, view: View, palette: &Palette, comman
     let window = ui.ctx().content_rect().height();
     let is_open = state.display.arrangement.is_dock_open(window >= LEAST_WITH_DOCK);
     let frame = Frame::new().fill(palette.background);
+    restore_panel_size(ui, "dock");
     let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
     let panel = if is_open {
         panel.resizable(true).default_size((DOCK_PART * window).round()).size_range(140.0..=0.6 * window)

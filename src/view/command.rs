@@ -37,6 +37,8 @@ pub enum Command {
     FocusPair(Pair),
     /// Point at a model in every view, as long as this is asked for in each frame.
     Hover(ModelId),
+    /// Point at a condition; for this frame.
+    HoverCondition(ConditionId),
     /// Show only this model beside the representatives; the same model again shows all.
     Isolate(ModelId),
     /// Bring a plot to the front.
@@ -73,6 +75,8 @@ pub enum Command {
     ShowZeros(bool),
     /// Show error bars and bands in the plots of gains, or not.
     ShowBars(bool),
+    /// Lay a variant over the present decisions in Bode and Net gain, or none.
+    Overlay(Option<String>),
     /// Show the evidence for the schedule beside the net gains, or not.
     ShowEvidence(bool),
     /// Lay other models of the conditions over one another.

@@ -171,8 +171,12 @@ impl<'a> Map<'a> {
         let flight_state = condition.flight_state();
         let name = format!("Condition {id}: {}{}", in_words(flight_state), marks.after_name());
         let is_shown = id == state.condition().id();
+        let is_pointed = state.display.hovered_condition == Some(id);
         let height = ROWS[usize::from(self.is_rail)];
-        let (row, response) = row_of_height_ui(ui, palette, (is_shown, false, height), &name);
+        let (row, response) = row_of_height_ui(ui, palette, (is_shown, is_pointed, height), &name);
+        if response.contains_pointer() {
+            commands.push(Command::HoverCondition(id));
+        }
         let color = if marks.left_out { palette.quiet_text } else { palette.text };
         let places = if self.is_rail { [20.0, 0.0, 50.0] } else { PLACES };
         let body = FontId::proportional(BODY_SIZE);

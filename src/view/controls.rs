@@ -1,10 +1,12 @@
 //! What panels and forms are made of: small texts, named controls, fields, menus of commands, headings, and rows of lists.
 
+use egui::containers::panel::PanelState;
 use egui::{
     Align, Align2, Button, Color32, FontId, Id, Key, Layout, Rect, Response, RichText, Role, Sense, TextEdit, Ui,
     WidgetInfo, pos2, vec2,
 };
 
+use super::focus::begin_with;
 use super::palette::medium;
 use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, TableKind};
 
@@ -119,6 +121,9 @@ pub fn row_of_height_ui(
 ) -> (Rect, Response) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, ui.is_enabled(), selected, name));
+    if selected {
+        begin_with(ui.ctx(), response.id);
+    }
     let fill = if selected {
         palette.selected
     } else if response.hovered() || pointed || response.has_focus() {
@@ -128,6 +133,14 @@ pub fn row_of_height_ui(
     };
     ui.painter().rect_filled(rect, 4.0, fill);
     (rect, response)
+}
+
+/// Puts the panel of this name back to its own size where its edge was double clicked; called before it is shown.
+pub fn restore_panel_size(ui: &Ui, name: &str) {
+    let panel = ui.scope_id().with(name);
+    if ui.read_response(panel.with("__resize")).is_some_and(|edge| edge.double_clicked()) {
+        ui.ctx().data_mut(|data| data.remove::<PanelState>(panel));
+    }
 }
 
 /// Where a row has room for a text \[pt from the row's left edge\].

@@ -27,6 +27,8 @@ pub struct Display {
     pub pair: Pair,
     /// The model pointed at.
     pub hovered: Option<ModelId>,
+    /// The condition that is pointed at, in the list or as a dot.
+    pub hovered_condition: Option<ConditionId>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
     /// The value whose derivation is shown.
@@ -97,6 +99,8 @@ pub struct Display {
     pub across_shapes: AirspeedCache,
     /// The name that the present decisions are to be kept under, as typed.
     pub variant_name: String,
+    /// The variant whose corrected model and net gains are laid over those shown, by its name.
+    pub overlaid: Option<String>,
     /// Orders of the tables of the comparison: what differs, and what it does.
     pub compare_sorting: [Sorting; 2],
     /// Cells of the overview.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use egui::{CursorIcon, Label, Response, RichText, Sense, Ui, WidgetText};
+use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
@@ -35,6 +35,14 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     for step in &found.with_numbers {
         ui.label(RichText::new(step).monospace());
     }
+    ui.add_space(4.0);
+    Grid::new("terms of the equation").num_columns(2).min_row_height(14.0).spacing([10.0, 2.0]).show(ui, |ui| {
+        for (symbol, meaning) in found.terms() {
+            ui.label(RichText::new(symbol).monospace());
+            ui.add(Label::new(palette.small(meaning)).wrap());
+            ui.end_row();
+        }
+    });
     ui.add_space(4.0);
     ui.label(palette.small("It rests on"));
     for part in &found.rests_on {

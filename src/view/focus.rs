@@ -33,6 +33,8 @@ pub enum Region {
 #[derive(Clone, Default)]
 struct Regions {
     parts: BTreeMap<Region, Part>,
+    /// The rows that are selected, and the pass in which they were drawn: a region that was not visited yet begins with its own.
+    selected: (u64, Vec<Id>),
 }
 
 #[derive(Clone, Default)]
@@ -85,14 +87,26 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
     inner
 }
 
+/// Says that a row is the selected one of its list, in each frame that draws it.
+pub fn begin_with(ctx: &Context, row: Id) {
+    let pass = ctx.cumulative_pass_nr();
+    ctx.data_mut(|data| {
+        let (last, rows) = &mut data.get_temp_mut_or_default::<Regions>(key()).selected;
+        if std::mem::replace(last, pass) != pass {
+            rows.clear();
+        }
+        rows.push(row);
+    });
+}
+
 /// Where a region is in the window, as far as it is in view.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).parts.get(&region)?.place);
     place.filter(|place| place.is_positive())
 }
 
-/// Gives the focus to the next region that has a control, or to the one before: to the control that had it last there, or else to
-/// the first.
+/// Gives the focus to the next region that has a control, or to the one before: to the control that had it last there, else to the
+/// selected row, or to the first control.
 pub fn leave_region(ctx: &Context, forward: bool) {
     let focused = ctx.memory(|memory| memory.focused());
     let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
@@ -107,7 +121,8 @@ pub fn leave_region(ctx: &Context, forward: bool) {
     };
     let part = parts[next];
     let visited = part.visited.filter(|visited| part.controls.contains(visited));
-    if let Some(id) = visited.or(part.controls.first().copied()) {
+    let selected = part.controls.iter().find(|control| regions.selected.1.contains(control));
+    if let Some(id) = visited.or(selected.copied()).or(part.controls.first().copied()) {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
 }

@@ -42,9 +42,12 @@ pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
 /// One bundle in a sheet beside the rail.
 pub fn bundle_sheet_ui(ui: &mut Ui, state: &State, kind: BundleKind, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
-    region_ui(ui, Region::Models, |ui| match kind {
-        BundleKind::Physics => physics_ui(ui, state, palette, commands),
-        BundleKind::Identified => rows_ui(ui, state, palette, BundleKind::Identified, commands),
+    // The sheet has a heading of its own.
+    region_ui(ui, Region::Models, |ui| {
+        if kind == BundleKind::Physics {
+            at_once_ui(ui, state, palette, commands);
+        }
+        rows_ui(ui, state, palette, kind, commands);
     });
 }
 

@@ -239,7 +239,8 @@ impl Palette {
             noninteractive: widget(self.panel, self.panel, self.line, self.text),
             inactive: widget(self.raised, self.line, self.line, self.text),
             hovered: widget(shade(0.07), shade(0.22), shade(0.3), self.text),
-            active: widget(self.selected, self.accent, self.accent, self.text),
+            // Of a box that is pressed or has the focus: a fill of accent would look checked.
+            active: widget(self.selected, shade(0.22), self.accent, self.text),
             open: widget(shade(0.07), self.raised, self.line, self.text),
         }
     }
@@ -317,6 +318,15 @@ mod tests {
     /// What the guidelines ask of text, and of lines that mean something.
     const OF_TEXT: f32 = 4.5;
     const OF_LINES: f32 = 3.0;
+
+    #[test]
+    fn a_box_with_the_focus_is_not_filled_as_if_it_were_checked() {
+        for palette in [Palette::dark(), Palette::light()] {
+            let widgets = palette.widgets();
+            assert_eq!(widgets.active.bg_fill, widgets.hovered.bg_fill);
+            assert_ne!(widgets.active.bg_fill, palette.accent);
+        }
+    }
 
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {

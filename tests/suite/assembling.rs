@@ -100,6 +100,12 @@ fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
 }
 
+/// The models of the example in a folder of MATLAB files.
+pub(crate) fn example_folder(root: &Path) {
+    let example = &crate::EXAMPLE.dataset;
+    write_folders(root, example, |path, model| write_as_mat(example, path, model));
+}
+
 fn write_as_npz(dataset: &Dataset, path: &Path, model: &Model) {
     let numbers = ["A", "B", "C", "D"].into_iter().zip(matrices(model)).map(|(name, matrix)| (name, array(matrix)));
     let lists = labels(dataset)

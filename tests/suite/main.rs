@@ -16,6 +16,7 @@ mod messages;
 mod outputs;
 mod records;
 mod report;
+mod requirements;
 mod scripts;
 mod structure;
 mod window;

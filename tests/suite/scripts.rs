@@ -62,6 +62,15 @@ fn records_that_identify_no_input_are_status_1() {
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(ended.error.contains("error: no input is identified in these records: the models say nothing of LON"));
     assert!(desk.path("out/identified.json").exists(), "what was computed can be looked at");
+
+    // The same record under a second name counts once, and programs are told.
+    fs::copy(desk.path("a.csv"), desk.path("b.csv")).unwrap();
+    let more = ["--inputs", "LON", "--outputs", "Q", "--band", "0.5", "12", "--out", "twice"];
+    desk.gdcm(&[&["identify", "a.csv", "b.csv"], &more[..]].concat());
+    let found: Value = serde_json::from_slice(&fs::read(desk.path("twice/identified.json")).unwrap()).unwrap();
+    let copies: Vec<&Value> =
+        found["cautions"].as_array().unwrap().iter().filter(|of| of["code"] == "duplicate").collect();
+    assert_eq!((copies.len(), &copies[0]["record"]), (1, &json!("b")), "{found}");
 }
 
 #[test]

@@ -25,6 +25,20 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         &["units", "executor", "progress", "dataset", "response", "fidelity", "correction", "schedule", "uncertainty"],
     ),
     (
+        "requirements",
+        &[
+            "units",
+            "message_text",
+            "executor",
+            "dataset",
+            "assembly",
+            "response",
+            "fidelity",
+            "identification",
+            "uncertainty",
+        ],
+    ),
+    (
         "study",
         &[
             "units",
@@ -40,6 +54,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "schedule",
             "uncertainty",
             "couplings",
+            "requirements",
         ],
     ),
 ];

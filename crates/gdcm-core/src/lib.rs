@@ -118,6 +118,7 @@
 //! | [`schedule`] | regression over airspeed, its forms compared, assessment |
 //! | [`uncertainty`] | how sure each number is, what the scatter over the conditions is made of |
 //! | [`couplings`] | mixing of inputs and feedback of outputs, fitted to all conditions at once (M16) |
+//! | [`requirements`] | what a qualification asks of a model: bandwidth, time histories, modes, summary costs (M17) |
 //! | [`study`] | what the engineer does: settings, rejections, pins, variants, undo; the staged analysis, and how each number came about |
 
 pub mod assembly;
@@ -130,6 +131,7 @@ pub mod identification;
 pub mod message_text;
 pub mod progress;
 pub mod records;
+pub mod requirements;
 pub mod response;
 pub mod schedule;
 pub mod study;

@@ -29,6 +29,7 @@ mod recognise;
 mod record_files;
 mod recovery_file;
 mod report_file;
+mod requirements_file;
 mod rules_file;
 mod source;
 mod strides;
@@ -66,6 +67,7 @@ pub use record_files::{
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, assessment_sentence, report, save_report};
+pub use requirements_file::{REQUIREMENT_FILES, requirement_paths, write_requirements};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};

@@ -205,7 +205,7 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
     view.fit_if_requested(&visible);
     ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
         use_frame_colors(ui, palette);
-        let height = chips_ui(ui, rect, scene, palette, &mut events);
+        let height = chips_ui(ui, rect, (scene, view.hovered.as_ref()), palette, &mut events);
         let places = Places::of(rect.with_min_y(rect.top() + height), scene);
         if panes_ui(ui, &places, &visible, view, palette, &mut events) {
             let roles = role_chips(scene.curves, scene.hidden_roles, palette);
@@ -219,8 +219,18 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
 }
 
 /// The switches of all curves, hidden ones too, and what holds for the plot; gives the height that they take.
-fn chips_ui(ui: &Ui, rect: Rect, scene: &BodeScene<'_>, palette: &Palette, events: &mut Vec<BodeEvent>) -> f32 {
+fn chips_ui(
+    ui: &Ui,
+    rect: Rect,
+    (scene, hovered): (&BodeScene<'_>, Option<&CurveId>),
+    palette: &Palette,
+    events: &mut Vec<BodeEvent>,
+) -> f32 {
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
+    if let Some(curve) = scene.curves.iter().find(|curve| Some(&curve.id) == hovered) {
+        let of = curve.role.shown(curve.rejected);
+        roles.iter_mut().filter(|chip| chip.role == of).for_each(|chip| chip.lit = true);
+    }
     let plot = scene.quantity.label_suffix();
     let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
     let overflows = chips.width(ui) > rect.width();
@@ -443,7 +453,8 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
 }
 
 /// The roles that are named where they end.
-const NAMED: [Role; 4] = [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Nominal];
+const NAMED: [Role; 5] =
+    [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Variant, Role::Nominal];
 /// Least distance between two names \[pt\].
 const NAME_GAP: f32 = 14.0;
 

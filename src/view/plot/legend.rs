@@ -27,6 +27,8 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the curves of the role are drawn.
     pub(super) shown: bool,
+    /// Whether the pointer is on a curve of the role, or on what stands for one elsewhere.
+    pub(super) lit: bool,
 }
 
 impl RoleChip {
@@ -46,7 +48,13 @@ pub(super) fn role_chips(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette:
         // One chip for kept and rejected nominal models: dotted only where none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
         let look = palette.role_style(first.role, rejected);
-        Some(RoleChip { role, text: text(role, &members), look, shown: !hidden.contains(&role) })
+        Some(RoleChip {
+            role,
+            text: text(role, &members),
+            look,
+            shown: !hidden.contains(&role),
+            lit: members.iter().any(|curve| curve.highlighted),
+        })
     };
     Role::ALL.into_iter().filter_map(of_role).collect()
 }
@@ -115,7 +123,8 @@ impl Chips<'_> {
         let mut row = Row { area, corner: area.min, event: None };
         for chip in self.roles {
             let name = format!("Show {}{}", chip.role.name(), self.plot);
-            let response = row.chip_ui(ui, (&chip.text, &name), Some((chip.look, chip.shown)), palette);
+            let sample = Some((chip.look, chip.shown));
+            let response = row.chip_ui(ui, (&chip.text, &name), (sample, chip.lit), palette);
             let hint = if chip.shown { "Click: hide" } else { "Click: show" };
             let hint = format!("{hint} · Alt+click: alone · Shift+click: in front");
             if response.on_hover_text(hint).clicked() {
@@ -130,14 +139,14 @@ impl Chips<'_> {
         if let Some(shown) = self.bands {
             let style = CurveStyle { color: palette.identified.gamma_multiply(0.45), width: 7.0, ..BAND_SAMPLE };
             let name = format!("Show the band of 95 %{}", self.plot);
-            let response = row.chip_ui(ui, (BANDS, &name), Some((style, shown)), palette);
+            let response = row.chip_ui(ui, (BANDS, &name), (Some((style, shown)), false), palette);
             if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
                 row.event = Some(ChipEvent::Bands(!shown));
             }
         }
         for (index, chip) in self.states.iter().enumerate() {
             let name = format!("{}{}", chip.text, self.plot);
-            if row.chip_ui(ui, (&chip.text, &name), None, palette).on_hover_text(&chip.hint).clicked() {
+            if row.chip_ui(ui, (&chip.text, &name), (None, false), palette).on_hover_text(&chip.hint).clicked() {
                 row.event = Some(ChipEvent::Clicked(index));
             }
         }
@@ -166,7 +175,7 @@ impl Row {
         &mut self,
         ui: &Ui,
         (text, name): (&str, &str),
-        sample: Option<(CurveStyle, bool)>,
+        (sample, is_lit): (Option<(CurveStyle, bool)>, bool),
         palette: &Palette,
     ) -> Response {
         let is_shown = sample.is_none_or(|(_, shown)| shown);
@@ -186,7 +195,7 @@ impl Row {
             }
             None => response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name)),
         }
-        let is_meant = response.hovered() || response.has_focus();
+        let is_meant = is_lit || response.hovered() || response.has_focus();
         self.paint(ui, place, (sample, is_meant), palette);
         let at = pos2(place.left() + PAD + before, place.center().y - 0.5 * galley.size().y);
         ui.painter().galley(at, galley, color);

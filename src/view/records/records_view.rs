@@ -3,7 +3,7 @@
 use egui::scroll_area::ScrollBarVisibility;
 use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
 
-use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, text_field_ui};
+use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, restore_panel_size, text_field_ui};
 
 use gdcm_core::records::LayoutProblem;
 
@@ -48,6 +48,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
     let page = Page { state, records, palette };
     let width = LIST_WIDTH.min(0.4 * ui.available_width());
+    restore_panel_size(ui, "records");
     let panel = Panel::left("records").resizable(true).default_size(width).size_range(180.0..=480.0);
     panel.show(ui, |ui| {
         ScrollArea::vertical().id_salt("records").auto_shrink(false).show(ui, |ui| {

@@ -122,7 +122,7 @@ impl GainPlots<'_> {
             name,
             figure,
             selected: Some(MarkId::Condition(self.state.condition().id())),
-            highlighted: None,
+            highlighted: self.state.display.hovered_condition.map(MarkId::Condition),
             columns: &[],
             zooms: false,
             is_compact: false,
@@ -214,6 +214,7 @@ pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command>
         }
         FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::SelectCondition(condition)),
         FigureEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
+        FigureEvent::Pointed(MarkId::Condition(condition)) => Some(Command::HoverCondition(condition)),
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
     }
 }

@@ -6,6 +6,7 @@ use gdcm_core::study::{Analysis, Edit, Table, Variant, VariantJob, decision_diff
 
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;
+use crate::view::controls::toggle_ui;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
@@ -20,7 +21,8 @@ pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
         return;
     }
     for variant in state.study.variants.clone() {
-        variant_ui(ui, &variant, commands);
+        let is_overlaid = state.display.overlaid.as_ref() == Some(&variant.name);
+        variant_ui(ui, &variant, is_overlaid, commands);
     }
     ui.add_space(4.0);
     let tables = [difference_table(state), figure_table(state)];
@@ -55,7 +57,7 @@ fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     });
 }
 
-fn variant_ui(ui: &mut Ui, variant: &Variant, commands: &mut Vec<Command>) {
+fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new(&variant.name).strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -76,6 +78,11 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, commands: &mut Vec<Command>) {
             );
             let hint = "Its decisions become the present ones; undo brings those back";
             button("Take", "Take", hint, Edit::TakeVariant { name: name() });
+            let label = format!("Overlay variant {}", variant.name);
+            let hint = "Its corrected model in Bode, and its net gains, dotted beside the present ones";
+            if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
+                commands.push(Command::Overlay((!is_overlaid).then(name)));
+            }
         });
     });
 }
@@ -90,6 +97,17 @@ pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
 pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
     let job = VariantJob { study: state.study.of_variant(&variant.name)? };
     state.results.variants.iter().find(|(known, _)| *known == job).map(|(_, analysis)| analysis.as_ref())
+}
+
+/// The variant that is laid over the present decisions, and its analysis, where that is there.
+pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
+    let variant = state.study.variant(state.display.overlaid.as_deref()?)?;
+    Some((&variant.name, variant_analysis(state, variant)?))
+}
+
+/// The analysis that is laid over what is shown.
+pub fn overlay_job(state: &State) -> Option<VariantJob> {
+    Some(VariantJob { study: state.study.of_variant(state.display.overlaid.as_deref()?)? })
 }
 
 /// Every decision in which a variant differs from the present ones.

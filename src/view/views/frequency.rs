@@ -10,6 +10,7 @@ use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
 use gdcm_files::figure::{BodeOptions, ConditionSource};
 
+use super::compare::overlaid_analysis;
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
@@ -79,7 +80,7 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(|curve| match curve {
                 CurveId::Model(id) => Some(id),
-                CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads => None,
+                CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant => None,
             });
             Some(CurveCommand::Select(models.collect()).into())
         }
@@ -108,7 +109,9 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
         (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
-        (_, CurveId::Model(_) | CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads) => None,
+        (_, CurveId::Model(_) | CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant) => {
+            None
+        }
     }
 }
 
@@ -169,7 +172,9 @@ fn counted(models: usize) -> String {
 /// What the curves of the condition shown are made of; none until its responses are there.
 pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
-    Some(ConditionSource { study: &state.study, analysis: state.shown(), schedule, curves: state.curves()? })
+    let condition = state.condition().id();
+    let variant = overlaid_analysis(state).and_then(|(name, analysis)| Some((name, analysis.condition(condition)?)));
+    Some(ConditionSource { study: &state.study, analysis: state.shown(), schedule, curves: state.curves()?, variant })
 }
 
 /// What of the responses is shown, and how: the same on paper.
@@ -221,7 +226,7 @@ fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
                 curve.detail = format!("{}{separator}{action}", curve.detail);
             }
             CurveId::Scheduled if state.others_are_older() => curve.label.push_str(" of older settings"),
-            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads => {}
+            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant => {}
         }
     }
     curves

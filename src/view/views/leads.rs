@@ -9,6 +9,7 @@ use gdcm_files::figure::{Figure, FigureKind, FigureRequest, MarkId, all_channels
 use super::View;
 use super::frequency::condition_source;
 use crate::view::command::Command;
+use crate::view::controls::restore_panel_size;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureScene, FigureWords, figure_ui};
 use crate::view::state::State;
@@ -21,6 +22,7 @@ const TABLE_PART: f32 = 0.5;
 pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     if let Some(table) = leads_table(state) {
         let width = ui.available_width();
+        restore_panel_size(ui, "leads");
         let panel = Panel::right("leads").resizable(true).default_size(TABLE_PART * width).min_size(160.0);
         panel.show(ui, |ui| {
             let pair = Channel::of(state.display.pair);

@@ -4,14 +4,15 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::setting;
-use gdcm_files::figure::{Across, GainQuantity, MarkId, net_gain_figure, quieten, schedule_words};
+use gdcm_files::figure::{Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words};
 use serde::{Deserialize, Serialize};
 
 use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
+use super::compare::overlaid_analysis;
 use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
 use crate::view::command::Command;
-use crate::view::controls::{named, toggle_ui};
+use crate::view::controls::{named, restore_panel_size, toggle_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::settings_panel::{choice_ui, setting_ui};
@@ -92,6 +93,7 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     };
     if state.display.show_evidence {
         let width = ui.available_width();
+        restore_panel_size(ui, "evidence");
         let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
@@ -220,11 +222,14 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let pairs = if state.analysis().is_some() { net_gain_pairs(state) } else { Vec::new() };
     let figure = state.analysis().map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
     let mut figure = figure.unwrap_or_default();
+    let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::net_gain).collect();
+    if let Some((name, analysis)) = overlaid_analysis(state) {
+        add_variant(&mut figure, &quantities, analysis, name);
+    }
     for (plot, pair) in
         figure.plots.iter_mut().zip(&pairs).filter(|(_, pair)| !state.study.settings.constrained[**pair])
     {
         plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
     }
-    let quantities = pairs.into_iter().map(GainQuantity::net_gain).collect();
     GainPlots { state, figure: figure.with_ranges(), quantities, across: Across::Airspeed }
 }

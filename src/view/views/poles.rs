@@ -4,15 +4,17 @@ use std::sync::Arc;
 
 use egui::{Panel, RichText, Ui, Vec2, vec2};
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_core::requirements::{ModeName, NamedBy};
 use gdcm_core::response::{Mode, finite_zeros};
 use gdcm_core::study::{ConditionModes, Edit, Table};
 use gdcm_core::units::number;
-use gdcm_files::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
+use gdcm_files::figure::{Along, DotShape, Figure, Mark, MarkId, Range, Role, Sample, damping_grid, poles_figure};
 use nalgebra::Complex;
 
 use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
+use crate::view::controls::restore_panel_size;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::view::state::State;
@@ -42,6 +44,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     state.display.modes = modes;
     let height = ui.available_height();
     if !state.display.modes.table().0.rows.is_empty() {
+        restore_panel_size(ui, "modes");
         let panel = Panel::bottom("modes").resizable(true).default_size(TABLE_PART * height).min_size(60.0);
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
@@ -51,6 +54,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     };
     let mut view = state.display.figures.remove(&View::Poles).unwrap_or_default();
     let figure = poles(state).map(|figure| dressed(figure, &view)).unwrap_or_default();
+    legend_ui(ui, &figure, palette);
     let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
     let scene = FigureScene {
         name: "poles",
@@ -75,6 +79,23 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         });
     }
     state.display.figures.insert(View::Poles, view);
+}
+
+/// What the marks stand for, in one line above the plots.
+fn legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(12.0, 0.0);
+        for entry in figure.legend() {
+            let Sample::Dot { shape, color, .. } = entry.sample else { continue };
+            let mark = match shape {
+                DotShape::Cross => "×",
+                DotShape::Plus => "+",
+                _ => "○",
+            };
+            let words = RichText::new(format!("{mark} {}", entry.text)).size(SMALL_SIZE);
+            ui.label(words.color(palette.name_of(palette.color(color))));
+        }
+    });
 }
 
 /// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.
@@ -129,6 +150,7 @@ impl FigureWords for PoleWords<'_> {
         ui.label(&id.name);
         let lines = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
             Some(mode) => std::iter::once(mode_words(mode))
+                .chain(name_words(mode, &models[index]))
                 .chain(participation_words(mode, &models[index]))
                 .chain(sampled_words(&models[index]))
                 .collect(),
@@ -232,6 +254,12 @@ fn mode_words(mode: &Mode) -> String {
     words.join(", ")
 }
 
+/// What a mode is called, where the states of its model are named (M17.3).
+fn name_words(mode: &Mode, model: &Model) -> Option<String> {
+    let (name, by) = ModeName::of(mode, &model.states);
+    name.filter(|_| by == NamedBy::States).map(|name| name.to_string())
+}
+
 /// What a pole of a model of discrete time stands for.
 fn sampled_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else { return None };
@@ -260,7 +288,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
     let kind = BundleKind::Physics;
     let models = modes.condition.bundle(kind);
     let title = format!("Modes of condition {}", modes.condition.id());
-    let columns = ["|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
+    let columns = ["mode", "|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();
     let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
@@ -269,6 +297,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
         let jumps: Vec<&str> = track.jumps.iter().map(|&model| models[model].name.as_str()).collect();
         let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
         table.row([
+            name_words(mode, &models[reference]).unwrap_or_default(),
             figure(mode.frequency_rad_s),
             mode.damping_ratio.filter(|_| mode.oscillates()).map(figure).unwrap_or_default(),
             mode.time_constant_s.map(figure).unwrap_or_default(),

@@ -13,10 +13,12 @@ use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
 use gdcm::view::arrangement::View;
+use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::Command as Action;
 use gdcm::view::palette::Palette;
 use gdcm_core::study::Edit;
 
+use super::assembling::type_into;
 use super::views::{give, show};
 use super::*;
 
@@ -237,6 +239,22 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     });
     click(&mut window, "Page Response");
     look(&mut window, "records");
+    let folder = tempfile::tempdir().unwrap();
+    crate::assembling::example_folder(folder.path());
+    give(&mut window, AssemblingCommand::Add(vec![folder.path().to_owned()]));
+    wait_until(&mut window, "the models", |window| {
+        state(window).assembling.as_ref().is_some_and(|bench| bench.reading.is_none() && !bench.sources.is_empty())
+    });
+    // Where the folder is, is another place each time.
+    for (field, text) in [
+        ("Name of the dataset", "models"),
+        ("Path of the dataset to make", "models.json.gz"),
+        ("Path of the rules", "models.gdcm-rules.json"),
+    ] {
+        type_into(&mut window, field, text);
+    }
+    give(&mut window, AssemblingCommand::Select(5));
+    look(&mut window, "models");
     assert!(misses.is_empty(), "{}", misses.join("\n"));
 }
 

@@ -7,7 +7,7 @@ use gdcm::view::views::poles;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm_core::correction::Channel;
-use gdcm_core::study::{AcrossRole, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
+use gdcm_core::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 use gdcm_files::figure::{DotShape, Mark, Panel};
 
 use super::*;
@@ -77,6 +77,10 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     let reference =
         condition.model(BundleKind::Physics, state(&window).shown().unwrap().representative_name(BundleKind::Physics));
     assert!(!table.rows.is_empty() && table.rows.len() <= reference.unwrap().order().unwrap());
+    let names: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    for name in ["phugoid", "Dutch roll", "spiral"] {
+        assert_eq!(names.iter().filter(|of| **of == name).count(), 1, "{name} in {names:?}");
+    }
 
     // The fastest pole of some perturbed model stands clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
@@ -286,6 +290,76 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     assert_eq!(state(&window).study, kept);
     give(&mut window, Action::Undo);
     assert_eq!(state(&window).study, before);
+}
+
+#[test]
+fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
+    let mut window = window();
+    give(&mut window, Edit::KeepVariant { name: "as it was".to_owned() });
+    click(&mut window, "Hold LON → Q");
+    show(&mut window, View::Compare);
+    click(&mut window, "Overlay variant as it was");
+    show(&mut window, View::Bode);
+    let lon_q = pair(&window, "Q", "LON");
+    give(&mut window, Action::FocusPair(lon_q));
+    let of = |window: &Window, role: CurveRole| {
+        let drawn = &state(window).display.drawn;
+        drawn.iter().find(|curve| curve.role == role).map(|curve| curve.magnitude_db[0])
+    };
+    wait_until(&mut window, "the variant's curve", |window| of(window, CurveRole::Variant).is_some());
+    let condition = state(&window).condition().id();
+    let held = |analysis: &Analysis| analysis.condition(condition).unwrap().correction.net_gain(lon_q);
+    let (_, variant) = &state(&window).results.variants[0];
+    let ratio_db = 20.0 * (held(variant) / held(state(&window).analysis().unwrap())).log10();
+    let drawn_db = of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
+    assert!(ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9, "{drawn_db} dB drawn, {ratio_db} dB");
+    let has_key = |window: &Window| {
+        let figure = gdcm::view::views::net_gain_plots(state(window)).figure;
+        figure.plots[0].panels[0]
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, Mark::Dots(dots) if dots.name == "variant as it was"))
+    };
+    assert!(has_key(&window));
+    show(&mut window, View::Compare);
+    click(&mut window, "Overlay variant as it was");
+    assert!(!has_key(&window) && state(&window).display.overlaid.is_none());
+}
+
+#[test]
+fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
+    let mut window = window();
+    let row = window.get_by_label_contains("Condition 3: ").rect();
+    window.hover_at(row.left_center() + vec2(30.0, 0.0));
+    window.run_steps(3);
+    assert_eq!(state(&window).display.hovered_condition, Some(ConditionId(3)));
+    window.hover_at(pos2(800.0, 5.0));
+    window.run_steps(3);
+    assert_eq!(state(&window).display.hovered_condition, None);
+}
+
+#[test]
+fn a_double_click_on_its_edge_puts_a_panel_back() {
+    let mut window = window();
+    // Frames of a test are a quarter of a second apart.
+    window.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
+    let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
+    let (before, y) = (edge(&window), 500.0);
+    // The edge of the answer panel, some points left of what it holds.
+    let at = pos2((1600.0_f32 - 352.0).round(), y);
+    window.drag_at(at);
+    window.run_steps(2);
+    window.hover_at(at - vec2(60.0, 0.0));
+    window.run_steps(2);
+    window.drop_at(at - vec2(60.0, 0.0));
+    settle(&mut window);
+    assert!((before - edge(&window) - 60.0).abs() < 4.0, "{before} {}", edge(&window));
+    for _ in 0..2 {
+        window.drag_at(at - vec2(60.0, 0.0));
+        window.drop_at(at - vec2(60.0, 0.0));
+    }
+    settle(&mut window);
+    assert!((before - edge(&window)).abs() < 1.0, "{before} {}", edge(&window));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use nalgebra::Complex;
 
-use crate::units::ratio_to_db;
+use crate::units::{db_to_ratio, ratio_to_db};
 
 /// Order of a lead filter's numerator and denominator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -160,6 +160,13 @@ impl GainDelay {
     /// With these lead filters in series.
     pub fn led(self, leads: [Option<LeadFilter>; 2]) -> Self {
         Self { leads, ..self }
+    }
+
+    /// Its value at `omega` \[rad/s\].
+    pub fn at(self, omega: f64) -> Complex<f64> {
+        let filters = self.leads.iter().flatten();
+        let pure = Complex::from_polar(db_to_ratio(self.gain_db), -omega * self.delay_s);
+        filters.fold(pure, |product, filter| product * filter.at(omega))
     }
 
     /// Magnitudes \[dB\] at `omega` after it: `20 log10 k` more, and what the filters add.

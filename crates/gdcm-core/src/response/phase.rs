@@ -107,6 +107,12 @@ pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f
     omega.iter().map(at).collect()
 }
 
+/// What stands at the rising frequencies `known` \[rad/s\], one of `values` for each, at another `omega`: linear on log omega; none
+/// outside them.
+pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
+    Place::of(known, omega).map(|place| place.between(values))
+}
+
 /// Where a frequency lies between two measured ones: on `after`, or `fraction` of the way from the one before it.
 struct Place {
     after: usize,

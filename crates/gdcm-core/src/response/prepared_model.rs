@@ -99,28 +99,33 @@ impl PreparedModel {
     ///
     /// A response that its input cannot reach is exactly zero; that of a model with a [`LargeEntry`] is not a number.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
-        let mut response = self.undelayed(grid);
+        self.at(grid.omega())
+    }
+
+    /// [`PreparedModel::response`] at any frequencies `omega` \[rad/s\].
+    pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
+        let mut response = self.undelayed(omega);
         for (pair, &delay_s) in self.delays_s.iter().flat_map(|delays_s| delays_s.iter()).filter(|(_, by)| **by > 0.0) {
-            let turns: Vec<_> = grid.omega().iter().map(|omega| Complex::from_polar(1.0, -omega * delay_s)).collect();
+            let turns: Vec<_> = omega.iter().map(|omega| Complex::from_polar(1.0, -omega * delay_s)).collect();
             response.multiply(pair, &turns);
         }
         response
     }
 
-    fn undelayed(&self, grid: &FrequencyGrid) -> FrequencyResponse {
+    fn undelayed(&self, omega: &[f64]) -> FrequencyResponse {
         match &self.source {
             Source::StateSpace { form, sample_time_s, connected } => {
-                let at: Vec<_> = grid.omega().iter().map(|omega| shifted(*omega, *sample_time_s)).collect();
+                let at: Vec<_> = omega.iter().map(|omega| shifted(*omega, *sample_time_s)).collect();
                 let mut response = Arch::new().dispatch(Elimination { form, at: &at });
                 // Rounding errors stand where the input does not reach the output.
                 connected.iter().filter(|(_, connected)| !**connected).for_each(|(pair, _)| response.clear(pair));
                 response
             }
             Source::TooLarge { outputs, inputs } => {
-                let curve = vec![Complex::new(f64::NAN, f64::NAN); grid.len()];
+                let curve = vec![Complex::new(f64::NAN, f64::NAN); omega.len()];
                 FrequencyResponse::new(PairTable::filled(*outputs, *inputs, curve))
             }
-            Source::Measured(response) => FrequencyResponse::new(interpolate(response, grid.omega())),
+            Source::Measured(response) => FrequencyResponse::new(interpolate(response, omega)),
         }
     }
 }

@@ -26,6 +26,8 @@ pub struct ConditionSource<'a> {
     pub schedule: Option<&'a Schedule>,
     /// The responses of its models.
     pub curves: &'a Arc<ConditionCurves>,
+    /// The result of a variant of the study, by the variant's name, that is laid over.
+    pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
 /// What a curve stands for; unique within a scene.
@@ -39,6 +41,8 @@ pub enum CurveId {
     Scheduled,
     /// The representative physics model with the condition's own correction, its lead filters left out.
     WithoutLeads,
+    /// The representative physics model of a variant of the study with the variant's own correction.
+    Variant,
 }
 
 /// A model of the condition that is not left out of sight by another one alone.
@@ -144,21 +148,24 @@ impl<'a> ConditionSource<'a> {
         ratio.into_iter().chain(source).collect::<Vec<_>>().join(" · ")
     }
 
-    /// The representative physics model with the condition's own correction, with that of the schedule, and where there are leads
-    /// without them.
+    /// The representative physics model with the condition's own correction, with that of the schedule, where there are leads
+    /// without them, and where a variant is laid over with its.
     pub(super) fn corrected_models(&self, pair: Pair, options: &BodeOptions) -> Vec<CorrectedModel> {
         let Some(analysis) = self.analysis else { return Vec::new() };
-        let name = analysis.representative_name(BundleKind::Physics);
-        let Some(model) = self.curves.condition.position(BundleKind::Physics, name) else {
-            return Vec::new();
-        };
-        let corrected = |id: CurveId, role: Role, words: &str, correction: &ChannelCorrection| {
-            let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
-            let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
-            let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
-            let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
-            Some(CorrectedModel { curve, model, correction: correction.on(pair)? })
-        };
+        let of =
+            |result: &ConditionAnalysis, (id, role): (CurveId, Role), words: &str, correction: &ChannelCorrection| {
+                let name = result.representative_name(BundleKind::Physics);
+                let model = self.curves.condition.position(BundleKind::Physics, name)?;
+                let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
+                let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
+                let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
+                let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
+                Some(CorrectedModel { curve, model, correction: correction.on(pair)? })
+            };
+        let corrected = |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
+        let variant = self.variant.and_then(|(name, result)| {
+            of(result, (CurveId::Variant, Role::Variant), &format!("under variant {name}"), &result.correction)
+        });
         let own = corrected(CurveId::Corrected, Role::Corrected, "corrected", &analysis.correction);
         let scheduled = self.schedule.and_then(|schedule| {
             let correction = schedule.at_state(self.curves.condition.flight_state());
@@ -168,7 +175,7 @@ impl<'a> ConditionSource<'a> {
             let correction = analysis.correction.clone().without_leads();
             corrected(CurveId::WithoutLeads, Role::WithoutLeads, "corrected without leads", &correction)
         });
-        own.into_iter().chain(scheduled).chain(without).collect()
+        own.into_iter().chain(scheduled).chain(without).chain(variant).collect()
     }
 }
 

@@ -138,6 +138,24 @@ pub fn net_gain_figure(analysis: &Analysis, uncertainty: Option<&Uncertainty>, p
     figure.plots(plots).columns(5).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
+/// Lays the optima and the schedule of a variant over plots of these quantities, behind what is shown: small open dots, dotted.
+pub fn add_variant(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis, name: &str) {
+    let (role, across) = (Role::Variant.stroke(false), Across::Airspeed);
+    let key = format!("variant {name}");
+    for (panel, quantity) in figure.plots.iter_mut().flat_map(|plot| plot.panels.first_mut()).zip(quantities) {
+        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| quantity.is_scheduled(schedule, across));
+        let curve = schedule.map(|schedule| {
+            let (x, y): (Vec<f64>, Vec<f64>) = quantity.samples(schedule).into_iter().map(|[x, y]| (x, y)).unzip();
+            Mark::Curve(Curve::new(format!("schedule of {key}"), role, x, y))
+        });
+        let of = places(analysis, across).map(|(x, _, result)| (x, (quantity.of)(&result.correction)));
+        let empty = Dots { size: 0.7, ..Dots::new(&key, DotShape::Square, role.color).filled(false).key(&key) };
+        let dots = Mark::Dots(of.fold(empty, |dots, (x, y)| dots.dot(x, y, "")));
+        let behind = panel.marks.iter().position(|mark| matches!(mark, Mark::Dots(_))).unwrap_or(panel.marks.len());
+        panel.marks.splice(behind..behind, curve.into_iter().chain([dots]));
+    }
+}
+
 /// Leaves of the numbers in plots of net gain that of the condition `selected`, and where differences are asked for, those of the pairs
 /// that differ significantly, with their brackets: what the screen shows, which tells the others where they are pointed at.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {

@@ -113,7 +113,7 @@ mod tests {
         let grid = (study.settings.band, 20);
         let curves = engine.curves(&study.dataset, id, grid, &Unobserved).expect("nothing stops it").expect("curves");
         let shown = analysis.condition(id);
-        let source = ConditionSource { study: &study, analysis: shown, schedule: None, curves: &curves };
+        let source = ConditionSource { study: &study, analysis: shown, schedule: None, curves: &curves, variant: None };
         let pair = study.dataset.find_pair("P", "LAT").expect("the example has it");
         let figure = leads_figure(&source, &[pair]);
         assert!(figure.plots[0].title.ends_with(" dB at 120 rad/s"), "{}", figure.plots[0].title);

@@ -25,6 +25,8 @@ pub enum Role {
     Scheduled,
     /// The representative physics model with the condition's own correction, its lead filters left out.
     WithoutLeads,
+    /// The physics model with the correction of a variant of the study, laid over for comparison.
+    Variant,
     /// A model left out, whatever it was.
     Rejected,
     /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
@@ -33,7 +35,7 @@ pub enum Role {
 
 impl Role {
     /// Every role of one condition, in the order of a legend.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Nominal,
         Self::Perturbed,
         Self::Representative,
@@ -42,6 +44,7 @@ impl Role {
         Self::Corrected,
         Self::Scheduled,
         Self::WithoutLeads,
+        Self::Variant,
         Self::Rejected,
     ];
 
@@ -73,6 +76,7 @@ impl Role {
             Self::Corrected => "corrected",
             Self::Scheduled => "scheduled",
             Self::WithoutLeads => "without leads",
+            Self::Variant => "variant",
             Self::Rejected => "rejected",
             Self::OfAirspeed(_) => "condition",
         }
@@ -108,6 +112,7 @@ impl Role {
             Self::Corrected => line(Hue::Corrected, 2.0, Dash::Solid),
             Self::Scheduled => line(Hue::Corrected, 1.6, Dash::Long),
             Self::WithoutLeads => line(Hue::Corrected, 1.4, Dash::ShortDashDot),
+            Self::Variant => line(Hue::Corrected, 1.8, Dash::Dotted),
             Self::Rejected => line(Hue::Rejected, 1.0, Dash::Dotted),
             Self::OfAirspeed(step) => line(Hue::OfAirspeed(step), 1.8, Dash::Solid),
         }
@@ -136,8 +141,9 @@ impl Role {
             Self::Representative => 4,
             Self::IdentifiedRepresentative => 5,
             Self::WithoutLeads => 6,
-            Self::Scheduled => 7,
-            Self::Corrected => 8,
+            Self::Variant => 7,
+            Self::Scheduled => 8,
+            Self::Corrected => 9,
         }
     }
 }

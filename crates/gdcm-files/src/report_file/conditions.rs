@@ -71,7 +71,11 @@ fn draw(
     let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();
-        add_plots(page, result, &ConditionSource { study, analysis: Some(result), schedule, curves: &curves });
+        add_plots(
+            page,
+            result,
+            &ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None },
+        );
     }
     Ok(())
 }

@@ -48,7 +48,7 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
 }
 
 pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
-    const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p divided by its largest, w ≥ 0 by \
+    const EQUATION: &str = "r_a = median over b of d(a, b) / √(Σ_k w_k (p_ak − p_bk)²); each p divided by its largest, w_k ≥ 0 by \
                             least absolute deviations";
     let result = context.result;
     let value = result.discontinuity_ratio(&model.name)?;

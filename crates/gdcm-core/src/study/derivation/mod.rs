@@ -3,6 +3,7 @@
 mod channels;
 mod costs;
 mod deltas;
+mod terms;
 
 use crate::correction::{Channel, GainObjective};
 use crate::dataset::{BundleKind, ConditionId, ModelId, Pair};

@@ -42,6 +42,7 @@ impl Example {
             analysis: self.analysis.condition(CONDITION),
             schedule: self.analysis.schedule.as_ref().ok(),
             curves: &self.curves,
+            variant: None,
         }
     }
 

@@ -1,0 +1,206 @@
+//! The attitude that an input makes, over frequency: `Theta(j omega)`, from which bandwidth and phase delay are read (M17.1).
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use nalgebra::Complex;
+
+use crate::assembly::PhysicalUnit;
+use crate::dataset::{Band, Channel, MeasuredResponse, Pair};
+use crate::message_text::quoted;
+use crate::response::{GainDelay, PreparedModel, between, interpolate, log_spaced, unwrap, wrap};
+use crate::units::{number, ratio_to_db};
+
+/// Frequencies on which sign changes are looked for.
+const SEARCH_POINTS: usize = 400;
+/// Models are searched from the lower end of the band over this to its upper end times this.
+const SEARCH_BEYOND_BAND: f64 = 4.0;
+
+/// What an output is of an attitude.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum AttitudeOutput {
+    /// Its rate: deg/s, rad/s.
+    Rate,
+    /// The attitude itself: deg, rad.
+    Attitude,
+}
+
+/// Why a response has no attitude to read a bandwidth from.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AttitudeResponseError {
+    /// The output is neither a rate nor an attitude.
+    #[error(
+        "{} in {} has no bandwidth: it is neither a rate (deg/s, rad/s) nor an attitude (deg, rad)",
+        quoted(output),
+        quoted(unit)
+    )]
+    NotAnAttitude {
+        /// Name of the output.
+        output: String,
+        /// Its unit.
+        unit: String,
+    },
+    /// There are no two neighbouring frequencies at which the response is finite and not zero.
+    #[error("there is no response between {} and {} rad/s", number(*from), number(*to))]
+    NoResponse {
+        /// Lowest frequency asked for \[rad/s\].
+        from: f64,
+        /// Highest frequency asked for \[rad/s\].
+        to: f64,
+    },
+}
+
+impl AttitudeOutput {
+    /// What the unit of an output says that it is.
+    ///
+    /// # Errors
+    /// [`AttitudeResponseError::NotAnAttitude`] of any other unit.
+    pub fn of(output: &Channel) -> Result<Self, AttitudeResponseError> {
+        match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
+            Some("deg/s" | "rad/s") => Ok(Self::Rate),
+            Some("deg" | "rad") => Ok(Self::Attitude),
+            _ => Err(AttitudeResponseError::NotAnAttitude { output: output.name.clone(), unit: output.unit.clone() }),
+        }
+    }
+
+    /// What `H` is multiplied by to become the attitude: `1/(j omega)` of a rate.
+    fn factor(self, omega: f64) -> Complex<f64> {
+        match self {
+            Self::Rate => Complex::new(0.0, -1.0 / omega),
+            Self::Attitude => Complex::from(1.0),
+        }
+    }
+}
+
+/// A response at any frequencies \[rad/s\]; not a number where it is not known.
+pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
+
+/// The exact response of a model under `correction` (M2, M10).
+pub fn model_response(
+    model: &PreparedModel,
+    pair: Pair,
+    correction: GainDelay,
+) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+    move |omega| {
+        let values = model.at(omega);
+        values.curve(pair).iter().zip(omega).map(|(value, omega)| value * correction.at(*omega)).collect()
+    }
+}
+
+/// A measured response, interpolated between its frequencies and not a number outside them (M2).
+pub fn measured_response(response: &MeasuredResponse, pair: Pair) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+    move |omega| interpolate(response, omega)[pair].clone()
+}
+
+/// The frequencies \[rad/s\] on which a model is searched for crossings: 400, logarithmic, of `band / 4` to `4 band`.
+pub fn search_frequencies(band: Band) -> Vec<f64> {
+    log_spaced(band.min() / SEARCH_BEYOND_BAND, band.max() * SEARCH_BEYOND_BAND, SEARCH_POINTS)
+}
+
+/// `Theta(j omega)`: magnitude and continuous phase on a grid, and between.
+///
+/// Of a rate response H it is `H / (j omega)`. The phase is continuous, and lies in (-270, 90] deg at the lowest frequency of the band:
+/// below it, where no records say anything, slow and unstable modes turn a physics model's phase by whole turns.
+pub struct AttitudeResponse<'a> {
+    response: &'a ResponseAt<'a>,
+    output: AttitudeOutput,
+    omega: Vec<f64>,
+    magnitude_db: Vec<f64>,
+    phase: Vec<f64>,
+    lowest_of_band: usize,
+}
+
+impl<'a> AttitudeResponse<'a> {
+    /// The attitude that `response` makes of an output, searched on the rising frequencies `omega` \[rad/s\]: [`search_frequencies`]
+    /// of a model, its own frequencies of a measured response. It ends where the response first has no value. The branch of the
+    /// phase is decided at the first of them in `band`.
+    ///
+    /// # Errors
+    /// [`AttitudeResponseError::NoResponse`] where no two neighbouring frequencies have a value.
+    pub fn new(
+        response: &'a ResponseAt<'a>,
+        output: AttitudeOutput,
+        omega: &[f64],
+        band: Band,
+    ) -> Result<Self, AttitudeResponseError> {
+        let polar: Vec<Option<(f64, f64)>> = polar(response, output, omega);
+        let from = polar.iter().position(Option::is_some).unwrap_or(omega.len());
+        let run: Vec<(f64, f64)> = polar[from..].iter().map_while(|polar| *polar).collect();
+        if run.len() < 2 {
+            let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
+            return Err(AttitudeResponseError::NoResponse { from: end(omega.first()), to: end(omega.last()) });
+        }
+        let (magnitude_db, mut phase): (Vec<f64>, Vec<f64>) = run.into_iter().unzip();
+        unwrap(&mut phase);
+        let omega = omega[from..from + phase.len()].to_vec();
+        let lowest_of_band = omega.partition_point(|omega| *omega < band.min()).min(omega.len() - 1);
+        let principal = wrap(phase[lowest_of_band]);
+        let on_branch = if principal > FRAC_PI_2 { principal - TAU } else { principal };
+        let turns = on_branch - phase[lowest_of_band];
+        phase.iter_mut().for_each(|phase| *phase += turns);
+        Ok(Self { response, output, omega, magnitude_db, phase, lowest_of_band })
+    }
+
+    /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
+    pub(super) fn lowest_of_band(&self) -> usize {
+        self.lowest_of_band
+    }
+
+    /// The phase \[deg\] at the lowest frequency of the band where it speaks for a stick or an output that counts the other way round:
+    /// within 45 deg of +90 deg, where an attitude that follows its stick has 0 to -90 deg. Bandwidths are then wrong.
+    pub fn reversed_phase_deg(&self) -> Option<f64> {
+        let phase_deg = self.phase[self.lowest_of_band].to_degrees();
+        let is_reversed = !(-225.0..=45.0).contains(&phase_deg);
+        is_reversed.then_some(phase_deg)
+    }
+
+    /// The frequencies \[rad/s\] of the grid at which it is known, rising; at least two.
+    pub fn omega(&self) -> &[f64] {
+        &self.omega
+    }
+
+    /// `20 log10 |Theta|` on the grid, up to a constant that the units make.
+    pub fn magnitude_db(&self) -> &[f64] {
+        &self.magnitude_db
+    }
+
+    /// Continuous phase \[rad\] on the grid.
+    pub fn phase(&self) -> &[f64] {
+        &self.phase
+    }
+
+    /// The lowest and the highest frequency of the grid \[rad/s\].
+    pub fn range(&self) -> [f64; 2] {
+        [self.omega[0], self.omega[self.omega.len() - 1]]
+    }
+
+    /// Magnitude \[dB\] at `omega` \[rad/s\]; none where there is no response.
+    pub fn magnitude_db_at(&self, omega: f64) -> Option<f64> {
+        polar(self.response, self.output, &[omega])[0].map(|(magnitude_db, _)| magnitude_db)
+    }
+
+    /// Phase \[rad\] at `omega` \[rad/s\] on the branch of the grid around it; none outside the grid or where there is no response.
+    pub fn phase_at(&self, omega: f64) -> Option<f64> {
+        let near = between(&self.omega, &self.phase, omega)?;
+        let (_, principal) = polar(self.response, self.output, &[omega])[0]?;
+        Some(near + wrap(principal - near))
+    }
+
+    /// Phases \[rad\] at the rising frequencies `omega` \[rad/s\], unwrapped from `first`, that of the first of them; none where one
+    /// has no response. The grid may end before them.
+    pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
+        let polar = polar(self.response, self.output, omega);
+        let mut phases: Vec<f64> =
+            polar.into_iter().map(|polar| polar.map(|(_, phase)| phase)).collect::<Option<_>>()?;
+        unwrap(&mut phases);
+        let turns = TAU * ((first - phases.first()?) / TAU).round();
+        phases.iter_mut().for_each(|phase| *phase += turns);
+        Some(phases)
+    }
+}
+
+/// Magnitude \[dB\] and principal phase \[rad\] of the attitude; none where it is zero or not finite.
+fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Vec<Option<(f64, f64)>> {
+    let values = response(omega).into_iter().zip(omega).map(|(value, &omega)| value * output.factor(omega));
+    let polar = values.map(|value| (ratio_to_db(value.norm()), value.arg()));
+    polar.map(|(db, phase)| (db.is_finite() && phase.is_finite()).then_some((db, phase))).collect()
+}

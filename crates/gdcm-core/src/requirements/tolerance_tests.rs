@@ -1,0 +1,204 @@
+//! Tests of time histories within tolerances.
+
+use nalgebra::{DMatrix, dmatrix, dvector};
+use proptest::prelude::*;
+
+use super::known_answers_tests::{answers, number};
+use super::*;
+use crate::dataset::{Channel, StateSpace};
+use crate::executor::Sequential;
+use crate::identification::{FirstOrderHold, Segment, ValidationSettings, ValidationWindow, validate};
+
+const SAMPLE_TIME_S: f64 = 0.02;
+
+fn tolerance(absolute: f64, relative: f64) -> ChannelTolerance {
+    ChannelTolerance { output: 0, integrated: false, absolute, relative, unit: "deg/s".into() }
+}
+
+fn check_of(
+    flown: &[f64],
+    simulated: &[f64],
+    tolerance: &ChannelTolerance,
+) -> Result<ToleranceCheck, ToleranceCheckError> {
+    ToleranceCheck::of(&Manoeuvre { start_s: 0.0, sample_time_s: SAMPLE_TIME_S, flown, simulated }, tolerance)
+}
+
+/// The made-up record of the known answers.
+fn made_up() -> (Vec<f64>, Vec<f64>) {
+    let time = || (0..500).map(|n| SAMPLE_TIME_S * f64::from(n));
+    let flown = time().map(|t| 8.0 * (0.9 * t).sin() + 2.0).collect();
+    (flown, time().map(|t| 8.6 * (0.9 * t - 0.12).sin() + 2.3).collect())
+}
+
+fn outputs() -> Vec<Channel> {
+    [("P", "deg/s"), ("Q", "rad/s"), ("R", "deg/s"), ("NZ", "m/s^2")]
+        .map(|(name, unit)| Channel::new(name, unit))
+        .to_vec()
+}
+
+#[test]
+fn shares_and_excesses_are_the_known_ones() {
+    let ((flown, simulated), answers) = (made_up(), answers());
+    for case in answers["tolerance"]["cases"].as_array().unwrap() {
+        let check = check_of(&flown, &simulated, &tolerance(number(case, "absolute"), 0.1)).unwrap();
+        assert!((check.share_inside() - number(case, "share_inside")).abs() < 1e-12, "{case}");
+        assert!((check.largest_excess - number(case, "largest_excess")).abs() < 1e-12, "{case}");
+        let n = (check.largest_excess_at_s / SAMPLE_TIME_S).round() as usize;
+        let width = check.width[n];
+        assert!(((simulated[n] - flown[n]).abs() - width - check.largest_excess).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn the_parts_outside_hold_the_samples_that_are_outside() {
+    let flown = [0.0; 8];
+    let simulated = [0.0, 2.0, 3.0, 0.0, -2.0, 1.0, 0.0, 5.0];
+    let check = check_of(&flown, &simulated, &tolerance(1.0, 0.1)).unwrap();
+    assert_eq!(check.outside(), [[0.02, 0.04], [0.08, 0.08], [0.14, 0.14]]);
+    assert_eq!((check.inside, check.largest_excess, check.largest_excess_at_s), (4, 4.0, 0.14));
+}
+
+#[test]
+fn an_attitude_is_the_integral_of_its_rate_from_the_start() {
+    let rate: Vec<f64> = (0..101).map(|n| 3.0 * SAMPLE_TIME_S * f64::from(n)).collect();
+    let none = vec![0.0; 101];
+    let attitude = ChannelTolerance { integrated: true, ..tolerance(1.0, 0.0) };
+    let check = check_of(&rate, &none, &attitude).unwrap();
+    // 3 t^2 / 2: the trapezoidal rule is exact on straight lines.
+    assert!((check.flown[100] - 6.0).abs() < 1e-12 && check.flown[0] == 0.0);
+    assert!((check.largest_excess - 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_trend_is_the_sign_of_the_correlation_and_none_where_nothing_moves() {
+    let (flown, simulated) = made_up();
+    let turned: Vec<f64> = simulated.iter().map(|y| -y).collect();
+    let of = |simulated: &[f64]| check_of(&flown, simulated, &tolerance(1.0, 0.1)).unwrap().correlation();
+    assert!(of(&simulated).unwrap() > 0.9 && of(&turned).unwrap() < -0.9);
+    assert_eq!(of(&[4.0; 500]), None);
+}
+
+#[test]
+fn a_record_of_several_windows_counts_every_sample_once() {
+    let window = |record, start_s, simulated: [f64; 4]| ValidationWindow {
+        record,
+        start_s,
+        sample_time_s: 1.0,
+        measured: DMatrix::from_column_slice(4, 1, &[0.0, 1.0, 0.0, -1.0]),
+        simulated: DMatrix::from_column_slice(4, 1, &simulated),
+    };
+    let inside = [0.0, 1.0, 0.0, -1.0];
+    let windows = [window(0, 0.0, inside), window(2, 0.0, inside), window(0, 4.0, [0.0, 5.0, 0.0, -1.0])];
+    let records = RecordCheck::of_windows(&windows, &tolerance(0.5, 0.1)).unwrap();
+    assert_eq!(records.iter().map(|of| (of.record, of.windows.len())).collect::<Vec<_>>(), [(0, 2), (2, 1)]);
+    assert_eq!((records[0].share_inside(), records[1].share_inside()), (7.0 / 8.0, 1.0));
+    let worst = records[0].worst().unwrap();
+    assert_eq!((worst.largest_excess, worst.largest_excess_at_s), (3.5, 5.0));
+    assert!(records[1].correlation().unwrap() > 0.999 && records[0].correlation().unwrap() < 0.999);
+    let other = ChannelTolerance { output: 1, ..tolerance(0.5, 0.1) };
+    let refused = RecordCheck::of_windows(&windows, &other).unwrap_err();
+    assert_eq!(refused.to_string(), "there is no output number 2 in the record");
+}
+
+#[test]
+fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
+    let model = |gain: f64| StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap();
+    let stick = DMatrix::from_fn(1000, 1, |n, _| 10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin());
+    let held = FirstOrderHold::of(&model(2.0), SAMPLE_TIME_S).unwrap();
+    let flown = held.simulate(&dvector![1.0], &stick);
+    let segment = Segment { record: 0, start_s: 0.0, sample_time_s: SAMPLE_TIME_S, inputs: stick, outputs: flown };
+    let record = |gain: f64| {
+        let settings = ValidationSettings::unfiltered();
+        let validation = validate(&model(gain), std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
+        RecordCheck::of_windows(&validation.windows, &tolerance(1.0, 0.1)).unwrap().remove(0)
+    };
+    let (right, wrong) = (record(2.0), record(1.0));
+    assert_eq!((right.windows.len(), right.share_inside()), (2, 1.0));
+    assert!(right.correlation().unwrap() > 0.999_999);
+    assert!(wrong.share_inside() < 0.5 && wrong.worst().unwrap().largest_excess > 1.0);
+    assert!(wrong.correlation().unwrap() > 0.9, "too small, but the right trend");
+}
+
+#[test]
+fn samples_that_are_missing_are_refused_in_words() {
+    let words =
+        |flown: &[f64], simulated: &[f64]| check_of(flown, simulated, &tolerance(1.0, 0.1)).unwrap_err().to_string();
+    assert_eq!(words(&[], &[]), "there are no samples to compare");
+    assert_eq!(words(&[1.0, 2.0], &[1.0]), "expected as many simulated samples as flown ones, 2, found 1");
+    assert_eq!(words(&[1.0, f64::NAN], &[1.0, 2.0]), "the flown sample at 0.02 s is missing or not finite");
+}
+
+#[test]
+fn the_default_table_is_in_the_units_of_the_dataset() {
+    let table = ToleranceTable::default();
+    let of = |quantity: &str| {
+        table.rows().iter().find(|row| row.quantity == quantity).unwrap().of_outputs(&outputs()).unwrap()
+    };
+    assert_eq!((of("roll rate").absolute, of("roll rate").relative), (3.0, 0.1));
+    assert_eq!((of("bank angle").integrated, of("bank angle").unit.as_str()), (true, "deg"));
+    let pitch = of("pitch attitude");
+    assert!((pitch.absolute - 1.5_f64.to_radians()).abs() < 1e-15 && pitch.unit == "rad" && pitch.output == 1);
+    let normal = of("normal acceleration");
+    assert!((normal.absolute - 0.980_665).abs() < 1e-12 && normal.relative == 0.0);
+}
+
+#[test]
+fn a_tolerance_without_its_channel_is_refused_in_words() {
+    let bank = ToleranceTable::default().rows()[1].clone();
+    let words = |outputs: &[Channel]| bank.of_outputs(outputs).unwrap_err().to_string();
+    assert_eq!(words(&outputs()[1..]), "\"bank angle\" is not compared: there is no output \"P\"");
+    let acceleration = [Channel::new("P", "deg/s^2")];
+    assert_eq!(
+        words(&acceleration),
+        "\"bank angle\" is not compared: it is the integral of a rate, and \"P\" in \"deg/s^2\" is none (deg/s, rad/s)"
+    );
+    let in_g = Tolerance { unit: "g".into(), integrated: false, ..bank.clone() };
+    let words = in_g.of_outputs(&outputs()).unwrap_err().to_string();
+    assert_eq!(words, "\"bank angle\" is not compared: a tolerance in \"g\" does not fit \"P\" in \"deg/s\"");
+}
+
+#[test]
+fn a_table_comes_back_as_it_was_and_a_wrong_row_is_refused_with_its_place() {
+    let table = ToleranceTable::default();
+    let text = serde_json::to_string(&table).unwrap();
+    assert_eq!(serde_json::from_str::<ToleranceTable>(&text).unwrap(), table);
+    assert!(text.contains(r#"{"quantity":"normal acceleration","channel":"NZ","integrated":false,"absolute":0.1,"unit":"g","entry":"2.b.3.d, 2.c.3.b"}"#), "{text}");
+    for (from, to, words) in [
+        ("\"absolute\":2.0", "\"absolute\":0.0", "tolerance 3, \"pitch rate\": expected absolute above zero, found 0"),
+        (
+            "\"relative\":0.1",
+            "\"relative\":-0.1",
+            "tolerance 1, \"roll rate\": expected relative above zero, found -0.1",
+        ),
+        (
+            "\"channel\":\"NZ\"",
+            "\"channel\":\" \"",
+            "tolerance 7, \"normal acceleration\": expected the name of an output",
+        ),
+    ] {
+        let error = serde_json::from_str::<ToleranceTable>(&text.replacen(from, to, 1)).unwrap_err().to_string();
+        assert!(error.starts_with(words), "{error}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_model_compared_with_itself_is_inside_wholly(
+        flown in prop::collection::vec(-50.0_f64..50.0, 1..200), absolute in 1e-6_f64..5.0, integrated in any::<bool>(),
+    ) {
+        let check = check_of(&flown, &flown, &ChannelTolerance { integrated, ..tolerance(absolute, 0.1) }).unwrap();
+        prop_assert_eq!(check.share_inside(), 1.0);
+        prop_assert!(check.largest_excess <= -absolute && check.outside().is_empty());
+    }
+
+    #[test]
+    fn a_wider_tolerance_leaves_no_fewer_samples_inside(
+        pairs in prop::collection::vec((-50.0_f64..50.0, -50.0_f64..50.0), 1..200),
+        absolute in 0.1_f64..20.0, more in 0.0_f64..20.0, relative in 0.0_f64..0.5, more_relative in 0.0_f64..0.5,
+    ) {
+        let (flown, simulated): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
+        let narrow = check_of(&flown, &simulated, &tolerance(absolute, relative)).unwrap();
+        let wide = check_of(&flown, &simulated, &tolerance(absolute + more, relative + more_relative)).unwrap();
+        prop_assert!(wide.inside >= narrow.inside && wide.largest_excess <= narrow.largest_excess);
+    }
+}

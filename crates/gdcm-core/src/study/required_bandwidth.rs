@@ -1,0 +1,386 @@
+//! Bandwidth and phase delay of the models of a condition, with intervals (M17.1).
+//!
+//! ```text
+//! physics     the other kept physics models in its place, as they are                             (M13.1)
+//! corrected   each swap of a physics or an identified model, under the correction that it leads to (M13.1)
+//! identified  standard deviations of the response that the model carries, to first order          (M14)
+//! ```
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::correction::{Channel, ChannelCorrection, ChannelLeads};
+use crate::dataset::{self, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
+use crate::requirements::{
+    AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
+    CommandType, Metric, NoMetric, PairBand, PhaseLine, ResponseDeviation, model_response, search_frequencies,
+    substitution_bar,
+};
+use crate::response::{GainDelay, PreparedModel};
+use crate::uncertainty::{Figures, Scalar, student_quantile};
+
+use super::{AskedCondition, RequirementRole};
+
+/// Bandwidth and phase delay of one response of one model of a condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BandwidthFinding {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Its true airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// The response.
+    #[serde(skip)]
+    pub pair: Pair,
+    /// Name of its output.
+    pub output: String,
+    /// Name of its input.
+    pub input: String,
+    /// Which model.
+    pub role: RequirementRole,
+    /// Its name.
+    pub model: String,
+    /// The bandwidth \[rad/s\].
+    pub omega_bw_rad_s: Option<f64>,
+    /// Frequency of -135 deg \[rad/s\].
+    pub omega_phase_rad_s: Option<f64>,
+    /// Frequency of 6 dB of gain margin \[rad/s\].
+    pub omega_gain_rad_s: Option<f64>,
+    /// Frequency of -180 deg \[rad/s\].
+    pub omega_180_rad_s: Option<f64>,
+    /// Phase delay \[s\].
+    pub phase_delay_s: Option<f64>,
+    /// Which margin the bandwidth is.
+    pub rule: Option<BandwidthRule>,
+    /// Whether the gain margin comes before the phase margin: the standard warns of it.
+    pub gain_limited: bool,
+    /// Largest departure of the phase from a straight line between `omega_180` and `2 omega_180` \[deg\].
+    pub phase_departure_deg: Option<f64>,
+    /// Whether the phase delay is read from the least-squares line, the phase not being straight.
+    pub phase_delay_of_line: bool,
+    /// The numbers that rest on the response above the band, by name.
+    pub rests_above_band: Vec<&'static str>,
+    /// The numbers that rest on the response below the band, by name.
+    pub rests_below_band: Vec<&'static str>,
+    /// The interval of each number that has one, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub interval: BTreeMap<&'static str, [f64; 2]>,
+    /// Swaps that lack a number and are no part of its interval, by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub swaps_left_out: BTreeMap<&'static str, usize>,
+    /// Phase \[deg\] at the lowest frequency of the band, where it speaks for a reversed channel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reversed_phase_deg: Option<f64>,
+    /// Why a number, or every interval ("interval"), is absent, by its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<&'static str, String>,
+}
+
+/// Names of the numbers that are read from a response, in the order of [`metrics`].
+const METRICS: [&str; 5] =
+    ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
+/// Name of the departure of the phase from a straight line.
+const DEPARTURE: &str = "phase_departure_deg";
+
+impl BandwidthFinding {
+    /// Its numbers by their names.
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
+        let [bandwidth, phase, gain, neutral, delay] = METRICS;
+        [
+            (bandwidth, self.omega_bw_rad_s),
+            (phase, self.omega_phase_rad_s),
+            (gain, self.omega_gain_rad_s),
+            (neutral, self.omega_180_rad_s),
+            (delay, self.phase_delay_s),
+            (DEPARTURE, self.phase_departure_deg),
+        ]
+    }
+
+    /// Whether a number rests on the response above the band.
+    pub fn rests_above(&self, name: &str) -> bool {
+        self.rests_above_band.contains(&name)
+    }
+}
+
+/// The bandwidths of every on-axis response of a condition, role by role; of responses without one the reason.
+pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
+    let models = PreparedModels::of(asked);
+    let pairs = asked.analysis.study.dataset.measuring_pairs();
+    let roles = || asked.roles();
+    pairs.marked().flat_map(|pair| roles().map(|role| models.finding(pair, role)).collect::<Vec<_>>()).collect()
+}
+
+/// A model made ready for its response.
+struct ReadModel<'a> {
+    model: &'a Model,
+    prepared: PreparedModel,
+}
+
+impl<'a> ReadModel<'a> {
+    fn of(model: &'a Model) -> Self {
+        Self { model, prepared: PreparedModel::of(&model.dynamics) }
+    }
+
+    /// Bandwidth and phase delay of a response under a correction, and its phase where that speaks for a reversed channel.
+    fn bandwidth(
+        &self,
+        (pair, output): (Pair, &dataset::Channel),
+        correction: PairCorrection,
+        settings: BandwidthSettings,
+        bands: Option<&ModelBands>,
+    ) -> Result<(Bandwidth, Option<f64>), AttitudeResponseError> {
+        let output = AttitudeOutput::of(output)?;
+        let response = model_response(&self.prepared, pair, correction.multiplier);
+        let omega = match &self.model.dynamics {
+            Dynamics::StateSpace(_) => search_frequencies(settings.band),
+            Dynamics::Measured(measured) => measured.omega().to_vec(),
+        };
+        let attitude = AttitudeResponse::new(&response, output, &omega, settings.band)?;
+        let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
+        let deviation = bands.map(|bands| PairBand { bands, pair });
+        let deviation = deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation);
+        let bandwidth = Bandwidth::of(&attitude, &BandwidthSettings { above_band, ..settings }, deviation);
+        Ok((bandwidth, attitude.reversed_phase_deg()))
+    }
+}
+
+/// What a correction makes of one response.
+#[derive(Clone, Copy)]
+struct PairCorrection {
+    multiplier: GainDelay,
+    /// Whether a lead filter is part of it: above the band it is no model of the aircraft.
+    has_leads: bool,
+}
+
+impl PairCorrection {
+    const NONE: Self = Self { multiplier: GainDelay::NONE, has_leads: false };
+
+    /// None where the net gain is not positive.
+    fn of(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
+        let has_leads = Channel::of(pair).into_iter().any(|channel| correction.lead(channel).is_some());
+        Some(Self { multiplier: correction.on(pair)?, has_leads })
+    }
+
+    /// Of the figures of a swap; none where one of them does not exist.
+    fn of_swap(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
+        let gain = figures[Scalar::NetGain(pair)]?.exp();
+        let [output_s, input_s] = Channel::of(pair).map(|channel| figures[Scalar::ChannelDelay(channel)]);
+        let taus_s = [output_s?, input_s?];
+        let filters = taus_s.map(|tau_s| leads.and_then(|leads| leads.design.filter(tau_s)));
+        let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
+        let has_leads = filters.iter().any(Option::is_some);
+        Some(Self { multiplier: GainDelay::new(gain, delay_s).led(filters), has_leads })
+    }
+}
+
+/// A model in place of its representative, with what the correction then is.
+struct Swap<'a> {
+    kind: BundleKind,
+    model: usize,
+    figures: Option<&'a Figures>,
+}
+
+/// The values of the numbers of one response, where there are any; the order is that of [`METRICS`].
+type MetricValues = [Option<f64>; 5];
+
+/// The models of a condition that bandwidths are read from.
+struct PreparedModels<'a> {
+    asked: &'a AskedCondition<'a>,
+    settings: BandwidthSettings,
+    physics: usize,
+    /// The physics representative and those that stand in for it.
+    of_physics: BTreeMap<usize, ReadModel<'a>>,
+    identified: ReadModel<'a>,
+    swaps: Vec<Swap<'a>>,
+}
+
+impl<'a> PreparedModels<'a> {
+    fn of(asked: &'a AskedCondition<'a>) -> Self {
+        let uncertainty = asked.analysis.uncertainty.as_deref();
+        let of_condition = uncertainty.and_then(|uncertainty| uncertainty.conditions.get(&asked.id()));
+        let substitutions = of_condition.map_or(&[][..], |of| of.substitutions.substitutions.as_slice());
+        let swap = |(kind, model, figures): &'a (BundleKind, usize, Option<std::sync::Arc<Figures>>)| Swap {
+            kind: *kind,
+            model: *model,
+            figures: figures.as_deref(),
+        };
+        let swaps: Vec<Swap<'a>> = substitutions.iter().map(swap).collect();
+        let bundle = |kind| asked.result.condition.bundle(kind);
+        let physics = asked.result.comparison.physics.model;
+        let others = swaps.iter().filter(|swap| swap.kind == BundleKind::Physics).map(|swap| swap.model);
+        let prepared = |model: usize| (model, ReadModel::of(&bundle(BundleKind::Physics)[model]));
+        let of_physics = std::iter::once(physics).chain(others).map(prepared).collect();
+        let identified = ReadModel::of(&bundle(BundleKind::Identified)[asked.result.comparison.identified.model]);
+        let settings = BandwidthSettings {
+            command: CommandType::default(),
+            band: asked.analysis.study.settings.band,
+            above_band: AboveBand::Marked,
+        };
+        Self { asked, settings, physics, of_physics, identified, swaps }
+    }
+
+    fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
+        let mut finding = self.empty(pair, role);
+        match self.bandwidth(pair, role) {
+            Err(why) => {
+                finding.absent = finding.quantities().into_iter().map(|(name, _)| (name, why.clone())).collect();
+            }
+            Ok((bandwidth, reversed_phase_deg)) => {
+                finding.reversed_phase_deg = reversed_phase_deg;
+                finding.take(&bandwidth);
+                self.add_intervals(&mut finding, &bandwidth);
+            }
+        }
+        finding
+    }
+
+    fn empty(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
+        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
+        BandwidthFinding {
+            condition: self.asked.id(),
+            airspeed_kt: self.asked.airspeed_kt(),
+            pair,
+            output,
+            input,
+            role,
+            model: self.asked.model_name(role),
+            omega_bw_rad_s: None,
+            omega_phase_rad_s: None,
+            omega_gain_rad_s: None,
+            omega_180_rad_s: None,
+            phase_delay_s: None,
+            rule: None,
+            gain_limited: false,
+            phase_departure_deg: None,
+            phase_delay_of_line: false,
+            rests_above_band: Vec::new(),
+            rests_below_band: Vec::new(),
+            interval: BTreeMap::new(),
+            swaps_left_out: BTreeMap::new(),
+            reversed_phase_deg: None,
+            absent: BTreeMap::new(),
+        }
+    }
+
+    /// The bandwidth of the model of a role, or why it has none.
+    fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<(Bandwidth, Option<f64>), String> {
+        let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
+        if role == RequirementRole::Identified {
+            let (model, bands) = (&self.identified, self.identified.model.bands.as_deref());
+            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings, bands);
+            return bandwidth.map_err(|error| error.to_string());
+        }
+        let correction = match self.asked.correction(role) {
+            None => PairCorrection::NONE,
+            Some(of) => PairCorrection::of(of, pair).ok_or_else(|| "the net gain is not positive".to_owned())?,
+        };
+        self.of_physics[&self.physics]
+            .bandwidth(response, correction, self.settings, None)
+            .map_err(|error| error.to_string())
+    }
+
+    fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
+        let why = match finding.role {
+            RequirementRole::Physics | RequirementRole::Corrected => {
+                self.add_swapped(finding, bandwidth);
+                "no other model of the bundles gives a spread"
+            }
+            RequirementRole::Scheduled => "the schedule is not made again for each swap of models",
+            RequirementRole::Identified => {
+                finding.take_deviations(bandwidth, self.asked.analysis.study.settings.uncertainty.level);
+                match (&self.identified.model.dynamics, &self.identified.model.bands) {
+                    (_, Some(_)) => "the band of the identified model does not reach so far",
+                    (Dynamics::Measured(_), None) => "the measured response carries no band",
+                    (Dynamics::StateSpace(_), None) => "the identified model carries no band",
+                }
+            }
+        };
+        if finding.interval.is_empty() && metrics(bandwidth).iter().any(|metric| metric.is_ok()) {
+            finding.absent.insert("interval", why.to_owned());
+        }
+    }
+
+    /// The intervals of swapped models.
+    fn add_swapped(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
+        let level = self.asked.analysis.study.settings.uncertainty.level;
+        let of_bundle = |kind: BundleKind| -> Vec<MetricValues> {
+            let swaps = self.swaps.iter().filter(|swap| swap.kind == kind);
+            swaps.map(|swap| self.swapped(swap, finding.pair, finding.role)).collect()
+        };
+        let physics = of_bundle(BundleKind::Physics);
+        let is_corrected = finding.role == RequirementRole::Corrected;
+        let identified = if is_corrected { of_bundle(BundleKind::Identified) } else { Vec::new() };
+        for (index, metric) in metrics(bandwidth).into_iter().enumerate() {
+            let Ok(metric) = metric else { continue };
+            let of_metric = |swaps: &[MetricValues]| swaps.iter().map(|values| values[index]).collect::<Vec<_>>();
+            let bar = substitution_bar(metric.value, &of_metric(&physics), &of_metric(&identified));
+            if let Some(interval) = bar.interval(level) {
+                finding.interval.insert(METRICS[index], interval);
+            }
+            if bar.left_out > 0 {
+                finding.swaps_left_out.insert(METRICS[index], bar.left_out);
+            }
+        }
+    }
+
+    /// The numbers of a response after a swap.
+    fn swapped(&self, swap: &Swap<'_>, pair: Pair, role: RequirementRole) -> MetricValues {
+        let leads = self.asked.result.correction.leads.as_ref();
+        let correction = match (role, swap.figures) {
+            (RequirementRole::Corrected, figures) => {
+                figures.and_then(|figures| PairCorrection::of_swap(figures, pair, leads))
+            }
+            _ => Some(PairCorrection::NONE),
+        };
+        let model = if swap.kind == BundleKind::Physics { swap.model } else { self.physics };
+        let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
+        let bandwidth = correction
+            .and_then(|correction| self.of_physics[&model].bandwidth(response, correction, self.settings, None).ok());
+        bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
+    }
+}
+
+impl BandwidthFinding {
+    /// Takes what was read from a response.
+    fn take(&mut self, bandwidth: &Bandwidth) {
+        let read = metrics(bandwidth);
+        let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = read.map(|of| of.ok().map(|of| of.value));
+        (self.omega_bw_rad_s, self.omega_phase_rad_s, self.omega_gain_rad_s) = (omega_bw, omega_phase, omega_gain);
+        (self.omega_180_rad_s, self.phase_delay_s) = (omega_180, phase_delay);
+        (self.rule, self.gain_limited) = (bandwidth.rule, bandwidth.is_gain_limited());
+        // Where leads refuse the phase delay, the line that it would be read from rests on them too.
+        let line = bandwidth.phase_line.filter(|_| phase_delay.is_some());
+        self.phase_departure_deg = line.map(|line| line.departure_deg);
+        self.phase_delay_of_line = line.is_some_and(|line: PhaseLine| !line.is_straight());
+        for (name, metric) in METRICS.into_iter().zip(read) {
+            match metric {
+                Ok(metric) => {
+                    self.rests_above_band.extend(metric.rests_above_band.then_some(name));
+                    self.rests_below_band.extend(metric.rests_below_band.then_some(name));
+                }
+                Err(why) => {
+                    self.absent.insert(name, why.to_string());
+                }
+            }
+        }
+        if let Err(why) = bandwidth.phase_delay_s {
+            self.absent.insert(DEPARTURE, why.to_string());
+        }
+    }
+
+    /// Takes intervals of standard deviations: normal, and not below zero.
+    fn take_deviations(&mut self, bandwidth: &Bandwidth, level: f64) {
+        let factor = student_quantile(level, f64::INFINITY);
+        for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {
+            if let Ok(Metric { value, deviation: Some(deviation), .. }) = metric {
+                let half = factor * deviation;
+                self.interval.insert(name, [(value - half).max(0.0), value + half]);
+            }
+        }
+    }
+}
+
+/// What is read from a response, in the order of [`METRICS`].
+fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
+    [bandwidth.omega_bw, bandwidth.omega_phase, bandwidth.omega_gain, bandwidth.omega_180, bandwidth.phase_delay_s]
+}

@@ -1,0 +1,125 @@
+//! The modes of the physics representative against those of the identified one, where both are known by their matrices (M17.3).
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::dataset::{BundleKind, ConditionId, Model};
+use crate::requirements::{
+    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeToleranceTable, ModeValues, ModeVerdict, ModelModes, NamedBy,
+    compare_modes,
+};
+use crate::response::{Mode, modes_of};
+
+use super::AskedCondition;
+
+/// A mode of one model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeNumbers {
+    /// Name of the model.
+    pub model: String,
+    /// Real part of its pole \[rad/s\].
+    pub pole_real_rad_s: f64,
+    /// Imaginary part of its pole \[rad/s\], not negative.
+    pub pole_imaginary_rad_s: f64,
+    /// Period, time to half amplitude and damping ratio.
+    #[serde(flatten)]
+    pub values: ModeValues,
+    /// Why a number is absent, by its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<&'static str, &'static str>,
+}
+
+impl ModeNumbers {
+    fn of(mode: &ComparedMode, model: &str) -> Self {
+        let values = mode.values;
+        let reasons = [
+            ("period_s", values.period_s, "it does not oscillate"),
+            ("time_to_half_s", values.time_to_half_s, "it neither decays nor grows"),
+            ("damping_ratio", values.damping_ratio, "its pole is at zero"),
+        ];
+        let absent = reasons.into_iter().filter(|(_, value, _)| value.is_none());
+        Self {
+            model: model.to_owned(),
+            pole_real_rad_s: mode.pole.re,
+            pole_imaginary_rad_s: mode.pole.im,
+            values,
+            absent: absent.map(|(name, _, why)| (name, why)).collect(),
+        }
+    }
+
+    /// Its numbers by their names.
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
+        [
+            ("pole_real_rad_s", Some(self.pole_real_rad_s)),
+            ("pole_imaginary_rad_s", Some(self.pole_imaginary_rad_s)),
+            ("period_s", self.values.period_s),
+            ("time_to_half_s", self.values.time_to_half_s),
+            ("damping_ratio", self.values.damping_ratio),
+        ]
+    }
+}
+
+/// A mode of the identified representative, and that of the physics representative in its place.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModeFinding {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Its true airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Number of the mode in this condition, from 1, by rising frequency.
+    pub number: usize,
+    /// What it is called; none where neither states nor frequency say it.
+    pub name: Option<ModeName>,
+    /// What it is named by; by its frequency and damping alone it is a guess.
+    pub named_by: NamedBy,
+    /// What is said of the physics mode.
+    pub verdict: ModeVerdict,
+    /// The mode of the identified representative.
+    pub identified: ModeNumbers,
+    /// That of the physics representative in its place; none where it has none.
+    pub physics: Option<ModeNumbers>,
+    /// The tolerance, where the table has one for this mode.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<ModeTolerance>,
+}
+
+/// The modes of a condition.
+///
+/// # Errors
+/// Why there are none, in words.
+pub(super) fn mode_findings(
+    asked: &AskedCondition<'_>,
+    tolerances: &ModeToleranceTable,
+) -> Result<Vec<ModeFinding>, String> {
+    let representative = |kind: BundleKind| {
+        let condition = &asked.result.condition;
+        &condition.bundle(kind)[asked.result.representative(kind).model]
+    };
+    let (physics, identified) = (representative(BundleKind::Physics), representative(BundleKind::Identified));
+    let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
+    let flown = ModelModes { modes: &of_identified, states: &identified.states };
+    let model = ModelModes { modes: &of_physics, states: &physics.states };
+    // A dataset keeps no standard deviations of poles.
+    let rows = compare_modes(flown, &[model], &[], asked.analysis.study.settings.band, tolerances);
+    let finding = |(index, row): (usize, ModeRow)| ModeFinding {
+        condition: asked.id(),
+        airspeed_kt: asked.airspeed_kt(),
+        number: index + 1,
+        name: row.name,
+        named_by: row.named_by,
+        verdict: row.verdicts.first().copied().unwrap_or(ModeVerdict::NotPaired),
+        identified: ModeNumbers::of(&row.flown, &identified.name),
+        physics: row.models.first().copied().flatten().map(|mode| ModeNumbers::of(&mode, &physics.name)),
+        tolerance: row.tolerance,
+    };
+    Ok(rows.into_iter().enumerate().map(finding).collect())
+}
+
+/// The modes of a model, or why they are not known.
+fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
+    if model.state_space().is_none() {
+        return Err(format!("\"{}\" is a measured response: it has no poles", model.name));
+    }
+    modes_of(&model.dynamics).map_err(|error| format!("\"{}\": {error}", model.name))
+}

@@ -1,0 +1,282 @@
+//! What a qualification asks of the models of every condition (M17), without flight records: bandwidth and phase delay, modes, summary
+//! costs.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::correction::ChannelCorrection;
+use crate::dataset::{BundleKind, ConditionId, Pair};
+use crate::requirements::{CommandType, ModeToleranceTable, Summary, SummarySource};
+
+use super::{
+    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Execution, ModeFinding,
+    bandwidth_findings, mode_findings,
+};
+
+/// Which model of a condition a number is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RequirementRole {
+    /// The physics representative as it is.
+    Physics,
+    /// The same under the condition's own correction.
+    Corrected,
+    /// The same under the schedule at the condition's airspeed.
+    Scheduled,
+    /// The identified representative.
+    Identified,
+}
+
+impl RequirementRole {
+    /// Every role, in the order of tables.
+    pub const ALL: [Self; 4] = [Self::Physics, Self::Corrected, Self::Scheduled, Self::Identified];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Physics => "physics",
+            Self::Corrected => "corrected",
+            Self::Scheduled => "scheduled",
+            Self::Identified => "identified",
+        }
+    }
+}
+
+/// The summary costs of a physics model against the identified representative (M17.4).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SummaryFinding {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Its true airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Which model.
+    pub role: RequirementRole,
+    /// Its name.
+    pub model: String,
+    /// Mean J over the on-axis responses.
+    pub mean_j_on_axis: Option<f64>,
+    /// Mean J over all responses.
+    pub mean_j_all: Option<f64>,
+    /// Mean share of the band, in `ln omega`, inside the MUAD envelopes, over the on-axis responses: 0 to 1.
+    pub muad_share_on_axis: Option<f64>,
+    /// The same over all responses.
+    pub muad_share_all: Option<f64>,
+    /// Why a number is absent, by its name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub absent: BTreeMap<&'static str, String>,
+}
+
+impl SummaryFinding {
+    /// Its numbers by their names.
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("mean_j_on_axis", self.mean_j_on_axis),
+            ("mean_j_all", self.mean_j_all),
+            ("muad_share_on_axis", self.muad_share_on_axis),
+            ("muad_share_all", self.muad_share_all),
+        ]
+    }
+}
+
+/// A question that has no answer, in one condition or in all.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct MissingFinding {
+    /// The condition; none where it is all of them.
+    pub condition: Option<ConditionId>,
+    /// What is missing: "all", "scheduled" or "modes".
+    pub what: &'static str,
+    /// The reason in words.
+    pub why: String,
+}
+
+/// What has to be known about the numbers of a condition.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RequirementCaution {
+    /// The condition.
+    pub condition: ConditionId,
+    /// The caution in words.
+    pub text: String,
+}
+
+/// What a qualification asks of the models of every condition, as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Requirements {
+    /// The identified band \[rad/s\].
+    pub band_rad_s: [f64; 2],
+    /// Level of every interval.
+    pub interval_level: f64,
+    /// What the sticks of all axes command.
+    pub command: CommandType,
+    /// Bandwidth and phase delay of every on-axis response of every condition and role.
+    pub bandwidth: Vec<BandwidthFinding>,
+    /// The modes of physics against those identified.
+    pub modes: Vec<ModeFinding>,
+    /// The summary costs of every condition and role.
+    pub summary: Vec<SummaryFinding>,
+    /// What has no answer, and why.
+    pub missing: Vec<MissingFinding>,
+    /// What has to be known.
+    pub cautions: Vec<RequirementCaution>,
+}
+
+/// One condition with what its questions are asked of.
+pub(super) struct AskedCondition<'a> {
+    pub(super) analysis: &'a Analysis,
+    pub(super) result: &'a ConditionAnalysis,
+    pub(super) scheduled: Option<ChannelCorrection>,
+}
+
+impl AskedCondition<'_> {
+    pub(super) fn id(&self) -> ConditionId {
+        self.result.condition.id()
+    }
+
+    pub(super) fn airspeed_kt(&self) -> f64 {
+        self.result.condition.flight_state().airspeed_kt
+    }
+
+    /// The name of the model of a role.
+    pub(super) fn model_name(&self, role: RequirementRole) -> String {
+        let kind = if role == RequirementRole::Identified { BundleKind::Identified } else { BundleKind::Physics };
+        self.result.representative_name(kind).to_owned()
+    }
+
+    /// The correction of a role; none of models that have none.
+    pub(super) fn correction(&self, role: RequirementRole) -> Option<&ChannelCorrection> {
+        match role {
+            RequirementRole::Corrected => Some(&self.result.correction),
+            RequirementRole::Scheduled => self.scheduled.as_ref(),
+            RequirementRole::Physics | RequirementRole::Identified => None,
+        }
+    }
+
+    /// The roles that there is a model for.
+    pub(super) fn roles(&self) -> impl Iterator<Item = RequirementRole> + use<> {
+        let has_schedule = self.scheduled.is_some();
+        RequirementRole::ALL.into_iter().filter(move |role| has_schedule || *role != RequirementRole::Scheduled)
+    }
+
+    fn summary(&self, role: RequirementRole) -> SummaryFinding {
+        let on_axis = self.analysis.study.dataset.measuring_pairs();
+        let correction = self.correction(role);
+        let multiplier = |pair: Pair| correction.map_or(Some(crate::response::GainDelay::NONE), |of| of.on(pair));
+        let summary = Summary::of(&SummarySource {
+            mismatch: &self.result.comparison.representative.mismatch,
+            correction: &multiplier,
+            on_axis: &on_axis,
+            omega: &self.analysis.omega,
+            average: self.analysis.study.settings.cost_average,
+            validation: None,
+            outputs: self.analysis.study.dataset.outputs(),
+        });
+        let mut finding = SummaryFinding {
+            condition: self.id(),
+            airspeed_kt: self.airspeed_kt(),
+            role,
+            model: self.model_name(role),
+            mean_j_on_axis: summary.cost.on_axis,
+            mean_j_all: summary.cost.all,
+            muad_share_on_axis: summary.muad.on_axis,
+            muad_share_all: summary.muad.all,
+            absent: BTreeMap::new(),
+        };
+        let absent = finding.quantities().into_iter().filter(|(_, value)| value.is_none());
+        let why = |name: &str| {
+            let which = if name.ends_with("on_axis") { "no on-axis response" } else { "no response" };
+            format!("{which} of the two models can be compared")
+        };
+        finding.absent = absent.map(|(name, _)| (name, why(name))).collect();
+        finding
+    }
+}
+
+/// What is found of one condition.
+#[derive(Default)]
+struct ConditionFindings {
+    bandwidth: Vec<BandwidthFinding>,
+    modes: Vec<ModeFinding>,
+    summary: Vec<SummaryFinding>,
+    missing: Vec<MissingFinding>,
+}
+
+impl ConditionFindings {
+    fn of(analysis: &Analysis, id: ConditionId) -> Self {
+        let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
+        let result = match analysis.conditions.get(&id) {
+            Some(Ok(result)) => result,
+            Some(Err(failure)) => return Self::without(missing("all", failure.to_string())),
+            None => return Self::without(missing("all", "it was not analysed".to_owned())),
+        };
+        let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
+        let asked = AskedCondition { analysis, result, scheduled };
+        let (modes, no_modes) = match mode_findings(&asked, &ModeToleranceTable::default()) {
+            Ok(modes) => (modes, None),
+            Err(why) => (Vec::new(), Some(missing("modes", why))),
+        };
+        let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
+        Self {
+            bandwidth: bandwidth_findings(&asked),
+            modes,
+            summary: against_flight.map(|role| asked.summary(role)).collect(),
+            missing: no_modes.into_iter().collect(),
+        }
+    }
+
+    fn without(missing: MissingFinding) -> Self {
+        Self { missing: vec![missing], ..Self::default() }
+    }
+}
+
+/// What a qualification asks of the models of every condition with a result (M17.1, M17.3, M17.4), without records. Each condition is
+/// a step. Intervals take the bars of the analysis ([`Analysis::uncertainty`]).
+///
+/// # Errors
+/// [`Cancelled`] where `execution` is stopped.
+pub fn requirements_of(analysis: &Analysis, execution: &Execution<'_>) -> Result<Requirements, Cancelled> {
+    let settings = &analysis.study.settings;
+    let ids: Vec<ConditionId> = analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
+    let found = execution.each(ids.len(), 1, |index| ConditionFindings::of(analysis, ids[index]))?;
+    let mut requirements = Requirements {
+        band_rad_s: [settings.band.min(), settings.band.max()],
+        interval_level: settings.uncertainty.level,
+        command: CommandType::default(),
+        bandwidth: Vec::new(),
+        modes: Vec::new(),
+        summary: Vec::new(),
+        missing: Vec::new(),
+        cautions: Vec::new(),
+    };
+    if let Err(error) = &analysis.schedule {
+        requirements.missing.push(MissingFinding { condition: None, what: "scheduled", why: error.to_string() });
+    }
+    for of_condition in found {
+        requirements.cautions.extend(reversed_phases(analysis, &of_condition.bandwidth));
+        requirements.bandwidth.extend(of_condition.bandwidth);
+        requirements.modes.extend(of_condition.modes);
+        requirements.summary.extend(of_condition.summary);
+        requirements.missing.extend(of_condition.missing);
+    }
+    Ok(requirements)
+}
+
+/// A caution for each response whose phase speaks for a reversed channel, with the models that it is of.
+fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<RequirementCaution> {
+    let mut reversed: Vec<(Pair, ConditionId, Vec<&str>)> = Vec::new();
+    for finding in findings.iter().filter(|finding| finding.reversed_phase_deg.is_some()) {
+        match reversed.iter_mut().find(|(pair, ..)| *pair == finding.pair) {
+            Some((_, _, roles)) => roles.push(finding.role.name()),
+            None => reversed.push((finding.pair, finding.condition, vec![finding.role.name()])),
+        }
+    }
+    let caution = |(pair, condition, roles): (Pair, ConditionId, Vec<&str>)| RequirementCaution {
+        condition,
+        text: format!(
+            "{} ({}): the phase of the attitude at the lowest frequency of the band lies within 45 deg of +90 deg, as where the stick or the \
+             output counts the other way round; the bandwidth is then wrong",
+            analysis.study.dataset.pair_name(pair),
+            roles.join(", ")
+        ),
+    };
+    reversed.into_iter().map(caution).collect()
+}

@@ -1,0 +1,206 @@
+//! Files of requirements (M17): `requirements.json` and `requirements.csv`, the same numbers in both.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{BandwidthFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding};
+
+use super::csv_table::write_records;
+use super::file_error::FileError;
+use super::output_set::{OutputSet, make_directory};
+
+const NAME: &str = "gdcm-requirements";
+const VERSION: u64 = 1;
+
+/// The names of the files of requirements.
+pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
+
+/// Where the files of requirements stand in a directory.
+pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
+    REQUIREMENT_FILES.map(|name| directory.join(name))
+}
+
+/// `requirements.json`: what was found, behind what it was found of.
+#[derive(Serialize)]
+struct RequirementsDocument<'a> {
+    format: &'static str,
+    version: u64,
+    software: &'static str,
+    dataset: DatasetName<'a>,
+    #[serde(flatten)]
+    requirements: &'a Requirements,
+}
+
+#[derive(Serialize)]
+struct DatasetName<'a> {
+    name: &'a str,
+    sha256: &'a str,
+}
+
+/// Writes both files into a directory, made where there is none: both, or none.
+///
+/// `dataset` is the name of the dataset and the SHA-256 of its file.
+pub fn write_requirements(
+    requirements: &Requirements,
+    (name, sha256): (&str, &str),
+    directory: &Path,
+    mut outputs: OutputSet,
+) -> Result<(), FileError> {
+    let [json, table] = requirement_paths(directory);
+    outputs.check(&[&json, &table])?;
+    make_directory(directory)?;
+    let document = RequirementsDocument {
+        format: NAME,
+        version: VERSION,
+        software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
+        dataset: DatasetName { name, sha256 },
+        requirements,
+    };
+    outputs.add(&json, |file| {
+        serde_json::to_writer_pretty(&mut *file, &document)?;
+        file.write_all(b"\n")
+    })?;
+    outputs.add(&table, |file| write_rows(requirements, file))?;
+    outputs.persist()
+}
+
+const COLUMNS: [&str; 12] = [
+    "question",
+    "condition",
+    "airspeed_kt",
+    "role",
+    "model",
+    "output",
+    "input",
+    "mode",
+    "quantity",
+    "value",
+    "low",
+    "high",
+];
+/// Heading of the last column.
+const REMARK: &str = "remark";
+
+/// A row for each number.
+fn write_rows(requirements: &Requirements, file: &mut dyn Write) -> io::Result<()> {
+    let heading: Vec<String> = COLUMNS.into_iter().chain([REMARK]).map(str::to_owned).collect();
+    let bandwidth = requirements.bandwidth.iter().flat_map(bandwidth_rows);
+    let modes = requirements.modes.iter().flat_map(mode_rows);
+    let summary = requirements.summary.iter().flat_map(summary_rows);
+    write_records(file, std::iter::once(heading).chain(bandwidth).chain(modes).chain(summary))
+}
+
+/// What a number is of: the first eight cells of a row.
+struct Subject<'a> {
+    question: &'a str,
+    condition: ConditionId,
+    airspeed_kt: f64,
+    role: &'a str,
+    model: &'a str,
+    output: &'a str,
+    input: &'a str,
+    mode: String,
+}
+
+impl Subject<'_> {
+    fn row(&self, name: &str, value: Option<f64>, interval: Option<[f64; 2]>, remark: String) -> Vec<String> {
+        let cell = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        vec![
+            self.question.to_owned(),
+            self.condition.to_string(),
+            self.airspeed_kt.to_string(),
+            self.role.to_owned(),
+            self.model.to_owned(),
+            self.output.to_owned(),
+            self.input.to_owned(),
+            self.mode.clone(),
+            name.to_owned(),
+            cell(value),
+            cell(interval.map(|[low, _]| low)),
+            cell(interval.map(|[_, high]| high)),
+            remark,
+        ]
+    }
+}
+
+fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "bandwidth",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        output: &finding.output,
+        input: &finding.input,
+        mode: String::new(),
+    };
+    let row = |(name, value)| {
+        let interval = finding.interval.get(name).copied();
+        subject.row(name, value, interval, bandwidth_remark(finding, name, value.is_some()))
+    };
+    finding.quantities().into_iter().map(row).collect()
+}
+
+/// Why a number is absent, or what it rests on.
+fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bool) -> String {
+    if !is_known {
+        return finding.absent.get(name).cloned().unwrap_or_default();
+    }
+    let mut remarks: Vec<String> = Vec::new();
+    if name == "omega_bw_rad_s" && finding.gain_limited {
+        remarks.push("gain-limited".to_owned());
+    }
+    if name == "phase_delay_s" && finding.phase_delay_of_line {
+        remarks.push("of the least-squares line".to_owned());
+    }
+    if finding.rests_above(name) {
+        remarks.push("rests on the response above the band".to_owned());
+    }
+    if finding.rests_below_band.contains(&name) {
+        remarks.push("rests on the response below the band".to_owned());
+    }
+    if let Some(count) = finding.swaps_left_out.get(name) {
+        remarks.push(format!("{count} swaps without it"));
+    }
+    remarks.join("; ")
+}
+
+fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
+    let name = finding.name.map_or_else(String::new, |name| format!(" {name}"));
+    let rows = |role: &str, numbers: &ModeNumbers| -> Vec<Vec<String>> {
+        let subject = Subject {
+            question: "modes",
+            condition: finding.condition,
+            airspeed_kt: finding.airspeed_kt,
+            role,
+            model: &numbers.model,
+            output: "",
+            input: "",
+            mode: format!("{}{name}", finding.number),
+        };
+        let why = |name: &str| numbers.absent.get(name).copied().unwrap_or_default().to_owned();
+        numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
+    };
+    let physics = finding.physics.iter().flat_map(|numbers| rows("physics", numbers));
+    rows("identified", &finding.identified).into_iter().chain(physics).collect()
+}
+
+fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "summary",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        output: "",
+        input: "",
+        mode: String::new(),
+    };
+    let absent: &BTreeMap<&'static str, String> = &finding.absent;
+    let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
+    finding.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
+}

@@ -56,6 +56,8 @@ pub struct CouplingBars {
     pub mixing: DMatrix<f64>,
     /// Of `K`, m x p.
     pub feedback: DMatrix<f64>,
+    /// Student's quantile: a half-width over its standard deviation.
+    pub quantile: f64,
 }
 
 impl CouplingBars {
@@ -71,7 +73,7 @@ impl CouplingBars {
         let matrices = || fits.iter().map(|of| &of.fit.matrices);
         let mixing: Vec<_> = matrices().map(|of| of.normalised_mixing(airspeed_kt)).collect();
         let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
-        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile })
+        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile, quantile })
     }
 
     /// The entries of `M~`, whose bars these are, that are told from the identity: farther from it than their bar.

@@ -13,8 +13,8 @@ use crate::schedule::{
 use crate::uncertainty::Scalar;
 
 use super::{
-    BundleMetrics, Caution, Comparison, ConventionDoubt, FittedCouplings, LeadCompensated, LeadOffer, Study,
-    Uncertainty, scheduled_points,
+    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, FittedCouplings, LeadCompensated, LeadOffer,
+    Study, Uncertainty, scheduled_points,
 };
 
 /// The nominal model of a condition under the scheduled correction (M12).
@@ -101,8 +101,8 @@ pub struct ConditionAnalysis {
     pub condition: Arc<Condition>,
     /// Distances and discontinuity ratios of the bundles.
     pub figures: Arc<BundleMetrics>,
-    /// The representatives as they are, before the couplings; none without couplings.
-    pub uncoupled: Option<Arc<Comparison>>,
+    /// What the couplings have changed; none without couplings.
+    pub coupled: Option<CoupledCondition>,
     /// Representatives, G and D, of physics models with couplings where there are any (M16.3).
     pub comparison: Arc<Comparison>,
     /// What the gains were asked to do.
@@ -130,7 +130,7 @@ pub struct ConditionAnalysis {
 impl ConditionAnalysis {
     /// The comparison of the models as they are: before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
-        self.uncoupled.as_ref().unwrap_or(&self.comparison)
+        self.coupled.as_ref().map_or(&self.comparison, |coupled| &coupled.before)
     }
 
     /// Responses held: the constrained ones that are defined.

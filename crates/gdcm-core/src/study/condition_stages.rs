@@ -13,9 +13,9 @@ use crate::schedule::{CostChange, assess};
 
 use super::{
     BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionSubstitutions, CoupledResponses, CouplingSource, DelayFrom,
-    Execution, FittedCouplings, GridKey, LeadCompensated, LeadOffer, Memo, Mismatches, PhaseCorrection, Purpose,
-    Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
+    ConditionModels, ConditionResponses, ConditionSubstitutions, CoupledCondition, CoupledResponses, CouplingSource,
+    DelayFrom, Execution, FittedCouplings, GridKey, LeadCompensated, LeadOffer, Memo, Mismatches, PhaseCorrection,
+    Purpose, Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
 };
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
@@ -158,13 +158,16 @@ impl ConditionStages {
         let measured = self.measured(study, grid, execution)?;
         let outcome = match couplings {
             None => self.plain.compare_and_solve(&measured, None, (proofs, execution))?,
-            Some(_) => {
-                let uncoupled = self.plain.compare(&measured, None).ok();
-                let responses = self.coupled_responses(study, couplings, measured.responses);
-                let measured = Measured { responses, ..measured };
-                let outcome = self.coupled.compare_and_solve(&measured, couplings, (proofs, execution))?;
-                outcome.map(|result| ConditionAnalysis { uncoupled, ..result })
-            }
+            Some(fitted) => self.plain.compare(&measured, None).map_or_else(
+                |failure| Ok(Err(failure)),
+                |before| {
+                    let responses = self.coupled_responses(study, couplings, measured.responses);
+                    let measured = Measured { responses, ..measured };
+                    let outcome = self.coupled.compare_and_solve(&measured, couplings, (proofs, execution))?;
+                    let coupled = CoupledCondition { before, fitted: Arc::clone(fitted) };
+                    Ok(outcome.map(|result| ConditionAnalysis { coupled: Some(coupled), ..result }))
+                },
+            )?,
         };
         execution.step(1);
         Ok(outcome)
@@ -270,7 +273,7 @@ impl SolvedStages {
         Ok(Ok(ConditionAnalysis {
             condition: Arc::clone(&measured.condition),
             figures: Arc::clone(&measured.figures),
-            uncoupled: None,
+            coupled: None,
             comparison,
             gain_problem,
             delay_problem,
@@ -354,7 +357,7 @@ fn comparison_key(study: &Study, condition: ConditionId, couplings: Option<&Arc<
 }
 
 /// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
-const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
+pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
 
 /// What the optima of a condition are asked for.
 struct SolveInput<'a> {

@@ -19,19 +19,19 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
 }
 
 /// An engine that has analysed the example with mixing and feedback, and what it found.
-static COUPLED: LazyLock<(Engine, Analysis)> = LazyLock::new(|| {
+pub(super) static COUPLED: LazyLock<(Engine, Analysis)> = LazyLock::new(|| {
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, &study(CouplingCorrection::MixingAndFeedback));
     (engine, analysis)
 });
 
 /// The engine of [`COUPLED`], which each test changes for itself.
-fn engine() -> Engine {
+pub(super) fn engine() -> Engine {
     COUPLED.0.fork(Box::new(crate::executor::Sequential))
 }
 
 /// `[on-axis, others]` of the mean J of each condition's own correction, and of the scheduled one.
-fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
+pub(super) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
     let results = analysis.conditions.values().map(|result| result.as_ref().unwrap());
     let own = mean_costs(results.map(|result| (*result.cost).clone()));
     let choice = AssessmentChoice {
@@ -63,7 +63,7 @@ fn the_engine_with_mixing_and_feedback_gives_the_known_answers() {
             |of: &ConditionAnalysis| BundleKind::BOTH.map(|kind| of.representative_name(kind).to_owned());
         assert_eq!(representatives(result), representatives(before), "decided on the models as they are");
         assert_eq!(result.suggested(), before.suggested());
-        assert_eq!(result.uncoupled.as_deref(), Some(&*before.comparison));
+        assert_eq!(result.before_couplings(), &*before.comparison);
         assert_eq!(result.doubts, before.doubts);
     }
 }
@@ -108,7 +108,7 @@ fn a_condition_held_out_does_not_enter_the_fit() {
     assert!(!couplings.is_fitted_to(held_out) && couplings.problem.conditions.len() == 10);
     assert_ne!(couplings.fit, *FEEDBACK);
     let result = analysis.condition(held_out).unwrap();
-    assert_ne!(Some(&*result.comparison), result.uncoupled.as_deref(), "but it is coupled too");
+    assert_ne!(&*result.comparison, result.before_couplings(), "but it is coupled too");
     // Another identified model of it changes nothing of the fit.
     let other = result.condition.bundle(BundleKind::Identified).iter().map(|model| &model.name);
     let other = other.filter(|name| *name != result.representative_name(BundleKind::Identified)).next_back().unwrap();
@@ -129,7 +129,7 @@ fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_
     assert!(refusal.to_string().starts_with("couplings: no response of the 0 conditions"), "{refusal}");
     let result = analysis.condition(ConditionId(1)).unwrap();
     assert_eq!(result.comparison, EXAMPLE.analysis.condition(ConditionId(1)).unwrap().comparison);
-    assert!(result.uncoupled.is_none());
+    assert!(result.coupled.is_none());
 }
 
 #[test]

@@ -78,6 +78,11 @@ impl Engine {
         }
     }
 
+    /// Who carries out its work.
+    pub(super) fn executor(&self) -> &dyn Executor {
+        self.executor.as_ref()
+    }
+
     /// The same engine with another budget for the proof of each condition's gains.
     pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
         Self { proofs, ..self }

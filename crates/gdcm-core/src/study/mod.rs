@@ -9,6 +9,10 @@ mod comparison;
 mod condition_responses;
 mod condition_stages;
 mod convention_doubt;
+mod coupled_condition;
+mod couplings_assessment;
+mod couplings_cost;
+mod couplings_words;
 mod decision_difference;
 mod derivation;
 mod edit;
@@ -43,6 +47,9 @@ pub use comparison::*;
 pub use condition_responses::*;
 use condition_stages::*;
 pub use convention_doubt::*;
+pub use coupled_condition::*;
+pub use couplings_assessment::*;
+pub use couplings_cost::*;
 pub use decision_difference::*;
 pub use derivation::{Derivation, ExplainTarget, derivation};
 pub use edit::*;
@@ -68,5 +75,7 @@ pub use uncertainty::*;
 
 #[cfg(test)]
 mod coupled_analysis_tests;
+#[cfg(test)]
+mod couplings_assessment_tests;
 #[cfg(test)]
 mod couplings_example_tests;

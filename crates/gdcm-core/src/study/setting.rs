@@ -170,7 +170,7 @@ pub static COUPLINGS: Setting = row(
             ["none", "none", "Gains, delays and leads of the channels alone (the paper)"],
             ["mixing", "mixing", "Each input takes constant shares of the others (M16)"],
             [
-                "mixing-and-feedback",
+                "feedback",
                 "mixing and feedback",
                 "Each input takes constant shares of the others and of the outputs: moves the modes too (M16)",
             ],

@@ -35,7 +35,7 @@ pub enum PhaseCorrection {
 
 /// What corrects the couplings and modes of the physics models before their channels are corrected (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
     /// Nothing: the physics models stay as they are (the paper).
     #[default]
@@ -43,10 +43,20 @@ pub enum CouplingCorrection {
     /// A mixing of the inputs.
     Mixing,
     /// A mixing of the inputs, and a feedback of outputs to inputs.
+    #[serde(rename = "feedback")]
     MixingAndFeedback,
 }
 
 impl CouplingCorrection {
+    /// What it is called in sentences; none: "no couplings".
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "no couplings",
+            Self::Mixing => "mixing",
+            Self::MixingAndFeedback => "mixing and feedback",
+        }
+    }
+
     /// What is to be fitted; none where nothing is.
     pub fn kind(self) -> Option<CouplingKind> {
         match self {

@@ -33,6 +33,17 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
+/// Asks whether a part of the work is still wanted, and tells nothing of that part's own steps.
+pub struct Untold<'a>(pub &'a dyn Progress);
+
+impl Progress for Untold<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+
+    fn advanced(&self, _done: usize, _total: usize) {}
+}
+
 /// The work was stopped before its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]

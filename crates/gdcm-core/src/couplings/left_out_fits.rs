@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use super::{CouplingError, CouplingFit, CouplingMatrices, CouplingProblem, fit_couplings};
 use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
-use crate::progress::{Progress, Shares};
+use crate::progress::{Progress, Shares, Untold};
 use crate::uncertainty::student_quantile;
 
 /// Conditions below which there are no error bars.
@@ -24,17 +24,6 @@ pub struct LeftOutFit {
     pub condition: ConditionId,
     /// The fit to all others.
     pub fit: CouplingFit,
-}
-
-/// Tells nothing of a single fit's solves, only whether it is still wanted.
-struct Quiet<'a>(&'a dyn Progress);
-
-impl Progress for Quiet<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.cancelled()
-    }
-
-    fn advanced(&self, _done: usize, _total: usize) {}
 }
 
 /// The couplings without each condition in turn, in the order of the conditions; each is a piece of work of its own.
@@ -53,7 +42,7 @@ pub fn left_out_fits(
     let shares = Shares::new(progress);
     let fits = each(executor, 0..count, |place| {
         let condition = problem.conditions[place].id;
-        let fit = fit_couplings(&problem.without(place), &Sequential, &Quiet(progress))?;
+        let fit = fit_couplings(&problem.without(place), &Sequential, &Untold(progress))?;
         shares.advance(1.0 / count as f64, "mixing and feedback without each condition")?;
         Ok(LeftOutFit { condition, fit })
     });
@@ -67,6 +56,8 @@ pub struct CouplingBars {
     pub mixing: DMatrix<f64>,
     /// Of `K`, m x p.
     pub feedback: DMatrix<f64>,
+    /// Student's quantile: a half-width over its standard deviation.
+    pub quantile: f64,
 }
 
 impl CouplingBars {
@@ -82,7 +73,7 @@ impl CouplingBars {
         let matrices = || fits.iter().map(|of| &of.fit.matrices);
         let mixing: Vec<_> = matrices().map(|of| of.normalised_mixing(airspeed_kt)).collect();
         let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
-        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile })
+        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile, quantile })
     }
 
     /// The entries of `M~`, whose bars these are, that are told from the identity: farther from it than their bar.

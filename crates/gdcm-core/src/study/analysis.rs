@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
+use crate::couplings::CouplingError;
 use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
 use crate::schedule::{
@@ -12,8 +13,8 @@ use crate::schedule::{
 use crate::uncertainty::Scalar;
 
 use super::{
-    BundleMetrics, Caution, Comparison, ConventionDoubt, LeadCompensated, LeadOffer, Study, Uncertainty,
-    scheduled_points,
+    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, FittedCouplings, LeadCompensated, LeadOffer,
+    Study, Uncertainty, scheduled_points,
 };
 
 /// The nominal model of a condition under the scheduled correction (M12).
@@ -37,6 +38,8 @@ pub struct Analysis {
     pub omega: Arc<[f64]>,
     /// Result of each condition.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
+    /// The couplings that every physics model has gone through, or why there are none; nothing where they are not asked for (M16).
+    pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
     /// Channels that one side seems to have in another sign or unit: what is said first.
     pub doubts: Vec<ConventionDoubt>,
     /// The schedule of the chosen conditions.
@@ -51,6 +54,11 @@ impl Analysis {
     /// Result of one condition, where there is one.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
+    }
+
+    /// The couplings that every physics model has gone through, where there are any.
+    pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
+        self.couplings.as_ref()?.as_ref().ok()
     }
 
     /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
@@ -93,7 +101,9 @@ pub struct ConditionAnalysis {
     pub condition: Arc<Condition>,
     /// Distances and discontinuity ratios of the bundles.
     pub figures: Arc<BundleMetrics>,
-    /// Representatives, G and D.
+    /// What the couplings have changed; none without couplings.
+    pub coupled: Option<CoupledCondition>,
+    /// Representatives, G and D, of physics models with couplings where there are any (M16.3).
     pub comparison: Arc<Comparison>,
     /// What the gains were asked to do.
     pub gain_problem: Arc<Problem>,
@@ -118,6 +128,11 @@ pub struct ConditionAnalysis {
 }
 
 impl ConditionAnalysis {
+    /// The comparison of the models as they are: before the couplings, where there are any.
+    pub fn before_couplings(&self) -> &Comparison {
+        self.coupled.as_ref().map_or(&self.comparison, |coupled| &coupled.before)
+    }
+
     /// Responses held: the constrained ones that are defined.
     pub fn held(&self) -> &PairTable<bool> {
         &self.gain_problem.constrained

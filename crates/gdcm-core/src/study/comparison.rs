@@ -291,7 +291,7 @@ impl Compared {
         (kind, model): (BundleKind, usize),
         (grid, coherence): (&FrequencyGrid, Option<f64>),
     ) -> Self {
-        let mut polar = PolarResponse::of(&responses.bundle(kind)[model]);
+        let mut polar = PolarResponse::of(&responses.compared(kind, model));
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
         let coherence = coherence.filter(|_| kind == BundleKind::Identified);

@@ -7,7 +7,7 @@ use crate::correction::ABOVE_BAND;
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::{Cancelled, Execution, Memo, PhaseCorrection, Settings};
+use super::{Cancelled, Execution, FittedCouplings, Memo, PhaseCorrection, Settings};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -28,9 +28,45 @@ pub struct ConditionResponses {
     pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models, in file order.
     pub identified: Vec<Arc<FrequencyResponse>>,
+    /// Those of the physics models with couplings, where there are any.
+    coupled: Option<CoupledResponses>,
+}
+
+/// Responses of the physics models of a condition with mixing and feedback (M16.3), each made when it is first asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CoupledResponses {
+    couplings: Arc<FittedCouplings>,
+    airspeed_kt: f64,
+    made: Arc<[OnceLock<Arc<FrequencyResponse>>]>,
+}
+
+impl CoupledResponses {
+    /// None made yet, of so many models.
+    pub(super) fn new(couplings: &Arc<FittedCouplings>, airspeed_kt: f64, models: usize) -> Self {
+        let made = (0..models).map(|_| OnceLock::new()).collect();
+        Self { couplings: Arc::clone(couplings), airspeed_kt, made }
+    }
 }
 
 impl ConditionResponses {
+    /// The response of a model as it is compared and corrected: `H` of an identified model, `H~` of a physics model, which is `H`
+    /// where there are no couplings (M16.3).
+    pub(super) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
+        let response = &self.bundle(kind)[model];
+        match &self.coupled {
+            Some(coupled) if kind == BundleKind::Physics => {
+                let couple = || Arc::new(coupled.couplings.matrices().response(response, coupled.airspeed_kt));
+                Arc::clone(coupled.made[model].get_or_init(couple))
+            }
+            _ => Arc::clone(response),
+        }
+    }
+
+    /// The same with couplings.
+    pub(super) fn with(self, coupled: CoupledResponses) -> Self {
+        Self { coupled: Some(coupled), ..self }
+    }
+
     /// The responses of every model of `condition` on `points` frequencies of `band`.
     pub fn of(
         condition: &Arc<Condition>,
@@ -115,6 +151,12 @@ impl ConditionModels {
         &self.condition
     }
 
+    /// Hash of the numbers of a model.
+    pub(super) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
+        let before = if kind == BundleKind::Physics { 0 } else { self.condition.bundle(BundleKind::Physics).len() };
+        self.models[before + model].0
+    }
+
     /// Whether the bundles hold the same models, by name, origin and numbers, in the same order.
     pub(super) fn are_the_same_as(&self, other: &Self) -> bool {
         let contents = |models: &Self| models.models.iter().map(|(content, _)| *content).collect::<Vec<_>>();
@@ -148,7 +190,7 @@ impl ConditionModels {
         };
         let (of_physics, of_identified) = self.models.split_at(physics.len());
         let identified = bundle(self.condition.bundle(BundleKind::Identified), of_identified)?;
-        Ok(ConditionResponses { physics: bundle(physics, of_physics)?, identified })
+        Ok(ConditionResponses { physics: bundle(physics, of_physics)?, identified, coupled: None })
     }
 
     /// Lets go of what was computed for drawing.

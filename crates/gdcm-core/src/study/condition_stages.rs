@@ -13,25 +13,44 @@ use crate::schedule::{CostChange, assess};
 
 use super::{
     BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionSubstitutions, DelayFrom, Execution, GridKey, LeadCompensated,
-    LeadOffer, Memo, Mismatches, PhaseCorrection, Purpose, Settings, Study, SubstitutedOptimum, Substituting,
-    SubstitutionMemo,
+    ConditionModels, ConditionResponses, ConditionSubstitutions, CoupledCondition, CoupledResponses, CouplingSource,
+    DelayFrom, Execution, FittedCouplings, GridKey, LeadCompensated, LeadOffer, Memo, Mismatches, PhaseCorrection,
+    Purpose, Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
 };
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
-type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage, GainSource);
+type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage, GainSource, Option<Arc<FittedCouplings>>);
 /// The last result of each stage of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleMetrics>>,
+    /// Of the physics models as they are.
+    plain: SolvedStages,
+    responses: Memo<(GridKey, Arc<FittedCouplings>), CoupledResponses>,
+    /// Of the physics models with couplings.
+    coupled: SolvedStages,
+    substitutions: SubstitutionMemo,
+}
+
+/// The last comparison of the representatives of a condition, and the optima found on it.
+#[derive(Clone, Debug, Default)]
+struct SolvedStages {
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
     offer: Memo<Arc<Problem>, Solved>,
     gains: Memo<Arc<Problem>, Solved>,
     delays: Memo<Arc<Problem>, Solved>,
-    substitutions: SubstitutionMemo,
+}
+
+/// What a condition is compared and solved from.
+struct Measured<'a> {
+    study: &'a Study,
+    grid: &'a FrequencyGrid,
+    condition: Arc<Condition>,
+    responses: ConditionResponses,
+    figures: Arc<BundleMetrics>,
 }
 
 impl ConditionStages {
@@ -40,10 +59,9 @@ impl ConditionStages {
         Self {
             models,
             figures: Memo::default(),
-            comparison: Memo::default(),
-            offer: Memo::default(),
-            gains: Memo::default(),
-            delays: Memo::default(),
+            plain: SolvedStages::default(),
+            responses: Memo::default(),
+            coupled: SolvedStages::default(),
             substitutions: SubstitutionMemo::default(),
         }
     }
@@ -69,19 +87,20 @@ impl ConditionStages {
 
     /// Takes gains of the same problem in place of those kept.
     pub(super) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
-        if self.gains.holds(problem) {
-            self.gains = Memo::of(Arc::clone(problem), Ok(Arc::clone(solution)));
+        for stages in [&mut self.plain, &mut self.coupled] {
+            if stages.gains.holds(problem) {
+                stages.gains = Memo::of(Arc::clone(problem), Ok(Arc::clone(solution)));
+            }
         }
     }
 
-    /// Whatever is not kept of the analysis of the condition.
-    pub(super) fn analyze(
+    /// Responses and distances of the models as they are.
+    fn measured<'a>(
         &mut self,
-        study: &Study,
-        grid: &FrequencyGrid,
-        proofs: ProofBudget,
+        study: &'a Study,
+        grid: &'a FrequencyGrid,
         execution: &Execution<'_>,
-    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
+    ) -> Result<Measured<'a>, Cancelled> {
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
         let coherence = study.settings.coherence_threshold;
@@ -93,28 +112,84 @@ impl ConditionStages {
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
             BundleMetrics::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
         })?;
-        let outcome = self.compare_and_solve(study, &condition, grid, &responses, figures, (proofs, execution))?;
+        Ok(Measured { study, grid, condition, responses, figures })
+    }
+
+    /// What the condition brings to the fit of the couplings; none where its representatives cannot be compared, or have no delays.
+    pub(super) fn coupling_source(
+        &mut self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        proofs: ProofBudget,
+        execution: &Execution<'_>,
+    ) -> Result<Option<CouplingSource>, Cancelled> {
+        let measured = self.measured(study, grid, execution)?;
+        let source = match self.plain.compare(&measured, None) {
+            Err(_) => None,
+            Ok(comparison) => {
+                let measuring = study.dataset.measuring_pairs();
+                let input = measured.solve_input(&measuring, &comparison);
+                let delays = self.plain.delays(&input, input.lead_design().as_deref(), (proofs, execution))?.1;
+                let chosen = [comparison.physics.model, comparison.identified.model];
+                let [physics, flight] = [(BundleKind::Physics, chosen[0]), (BundleKind::Identified, chosen[1])];
+                let response = |(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]);
+                delays.ok().map(|delays| CouplingSource {
+                    condition: Arc::clone(&measured.condition),
+                    delays_s: delays.channels(),
+                    contents: [physics, flight].map(|(kind, model)| self.models.content(kind, model)),
+                    physics: response(physics),
+                    flight: response(flight),
+                    comparison: Arc::clone(&comparison),
+                })
+            }
+        };
+        execution.step(1);
+        Ok(source)
+    }
+
+    /// Whatever is not kept of the analysis of the condition, of physics models with couplings where there are any.
+    pub(super) fn analyze(
+        &mut self,
+        study: &Study,
+        (grid, couplings): (&FrequencyGrid, Option<&Arc<FittedCouplings>>),
+        proofs: ProofBudget,
+        execution: &Execution<'_>,
+    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
+        let measured = self.measured(study, grid, execution)?;
+        let outcome = match couplings {
+            None => self.plain.compare_and_solve(&measured, None, (proofs, execution))?,
+            Some(fitted) => self.plain.compare(&measured, None).map_or_else(
+                |failure| Ok(Err(failure)),
+                |before| {
+                    let responses = self.coupled_responses(study, couplings, measured.responses);
+                    let measured = Measured { responses, ..measured };
+                    let outcome = self.coupled.compare_and_solve(&measured, couplings, (proofs, execution))?;
+                    let coupled = CoupledCondition { before, fitted: Arc::clone(fitted) };
+                    Ok(outcome.map(|result| ConditionAnalysis { coupled: Some(coupled), ..result }))
+                },
+            )?,
+        };
         execution.step(1);
         Ok(outcome)
     }
 
     /// How the figures of the condition change when other models stand in for the representatives of `analysis` (M13.1); what is
-    /// kept of that is not computed again.
+    /// kept of that is not computed again. The couplings stay those of the representatives.
     pub(super) fn substitutions(
         &mut self,
         study: &Study,
-        analysis: &ConditionAnalysis,
+        (analysis, couplings): (&ConditionAnalysis, Option<&Arc<FittedCouplings>>),
         grid: &FrequencyGrid,
         execution: &Execution<'_>,
     ) -> Result<ConditionSubstitutions, Cancelled> {
         let grid_key = (study.settings.band, study.settings.points);
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
-        let substituting = Substituting { study, analysis, grid, responses: &responses };
-        let models = &self.models;
+        let responses = self.coupled_responses(study, couplings, responses);
+        let substituting = Substituting { study, analysis, grid, responses: &responses, couplings };
         let (settings, measuring) = (&study.settings, study.dataset.measuring_pairs());
         self.substitutions.complete(&substituting, execution, |mismatch, delta| {
             let input = SolveInput::new(settings, &measuring, grid.omega(), (mismatch, &delta));
-            let solved = Self::of(models.clone()).solve(&input, SUBSTITUTION_PROOF, execution)?;
+            let solved = SolvedStages::default().solve(&input, SUBSTITUTION_PROOF, execution)?;
             Ok(solved.ok().map(|solved| {
                 let gain = solved.gain_problem.delta.clone();
                 SubstitutedOptimum { correction: solved.correction(), delta: Delta { gain, ..delta } }
@@ -122,22 +197,43 @@ impl ConditionStages {
         })
     }
 
-    fn compare_and_solve(
+    /// The responses with couplings, where there are any: the one place where they are put on a physics model that is compared.
+    fn coupled_responses(
         &mut self,
         study: &Study,
-        condition: &Arc<Condition>,
-        grid: &FrequencyGrid,
-        responses: &ConditionResponses,
-        figures: Arc<BundleMetrics>,
-        (proofs, execution): (ProofBudget, &Execution<'_>),
-    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
+        couplings: Option<&Arc<FittedCouplings>>,
+        responses: ConditionResponses,
+    ) -> ConditionResponses {
+        let Some(couplings) = couplings else { return responses };
+        let key = ((study.settings.band, study.settings.points), Arc::clone(couplings));
+        let airspeed_kt = self.models.condition().flight_state().airspeed_kt;
+        let coupled =
+            self.responses.get(key, |(_, of)| CoupledResponses::new(of, airspeed_kt, responses.physics.len()));
+        responses.with(coupled)
+    }
+}
+
+impl<'a> Measured<'a> {
+    fn solve_input<'b>(&'b self, measuring: &'b PairTable<bool>, comparison: &'b Comparison) -> SolveInput<'b> {
+        let compared = (&comparison.representative.mismatch, &comparison.delta);
+        SolveInput::new(&self.study.settings, measuring, self.grid.omega(), compared)
+    }
+}
+
+impl SolvedStages {
+    /// The representatives, which the models as they are decide, and how their responses differ.
+    fn compare(
+        &mut self,
+        measured: &Measured<'_>,
+        couplings: Option<&Arc<FittedCouplings>>,
+    ) -> Result<Arc<Comparison>, ConditionFailure> {
+        let Measured { study, grid, condition, responses, figures } = measured;
         let settings = &study.settings;
-        let measuring = study.dataset.measuring_pairs();
         let choice = study.choice(condition.id());
-        let key = comparison_key(study, condition.id());
+        let key = comparison_key(study, condition.id(), couplings);
         let comparison = self.comparison.get(key, |_| {
             let averaging = (settings.cost_average, settings.coherence_threshold);
-            let comparison = Comparison::of(condition, responses, &figures, grid, choice, averaging);
+            let comparison = Comparison::of(condition, responses, figures, grid, choice, averaging);
             let comparison = comparison.map(|comparison| match settings.gain_source {
                 GainSource::Representatives => comparison,
                 GainSource::MeanOfPairs => comparison.with_mean_gains(condition, responses, grid, averaging.1),
@@ -145,28 +241,39 @@ impl ConditionStages {
             comparison.map(Arc::new)
         });
         let pair_name = |pair| study.dataset.pair_name(pair);
-        let comparison = comparison.and_then(|comparison| {
+        comparison.and_then(|comparison| {
             check_comparable(condition, &comparison, pair_name)?;
             Ok(comparison)
-        });
-        let comparison = match comparison {
+        })
+    }
+
+    fn compare_and_solve(
+        &mut self,
+        measured: &Measured<'_>,
+        couplings: Option<&Arc<FittedCouplings>>,
+        (proofs, execution): (ProofBudget, &Execution<'_>),
+    ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
+        let comparison = match self.compare(measured, couplings) {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
+        let (settings, omega) = (&measured.study.settings, measured.grid.omega());
+        let measuring = measured.study.dataset.measuring_pairs();
         let (models, average) = (&comparison.representative, settings.cost_average);
-        let input = SolveInput::new(settings, &measuring, grid.omega(), (&models.mismatch, &comparison.delta));
+        let input = measured.solve_input(&measuring, &comparison);
         let solved = match self.solve(&input, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
-        let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, grid.omega(), average));
+        let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, omega, average));
         let offer = self.offer(&input, &solved.gain_problem.constrained, &cost, execution)?;
-        let cautions = cautions_of(settings, &comparison, &figures);
+        let cautions = cautions_of(settings, &comparison, &measured.figures);
         let Optima { gain_problem, delay_problem, gains, delays, compensated } = solved;
         Ok(Ok(ConditionAnalysis {
-            condition: Arc::clone(condition),
-            figures,
+            condition: Arc::clone(&measured.condition),
+            figures: Arc::clone(&measured.figures),
+            coupled: None,
             comparison,
             gain_problem,
             delay_problem,
@@ -202,6 +309,19 @@ impl ConditionStages {
         Ok(LeadOffer::of(leads, &mismatch, now, (input.omega, settings.cost_average)))
     }
 
+    /// The delays, or signed delays, with what they were asked to do.
+    fn delays(
+        &mut self,
+        input: &SolveInput<'_>,
+        design: Option<&LeadDesign>,
+        (proofs, execution): (ProofBudget, &Execution<'_>),
+    ) -> Result<(Arc<Problem>, Solved), Cancelled> {
+        let problem = Arc::new(input.delay_problem(design));
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
+        let delays = self.delays.get_or_fail(Arc::clone(&problem), solve)?;
+        Ok((problem, delays))
+    }
+
     /// The delays, then the gains on what leads leave (M15.5).
     fn solve(
         &mut self,
@@ -209,12 +329,8 @@ impl ConditionStages {
         proofs: ProofBudget,
         execution: &Execution<'_>,
     ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
-        let settings = input.settings;
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
-        let design = (settings.phase == PhaseCorrection::Lead)
-            .then(|| Arc::new(LeadDesign::new(settings.lead, input.omega.into())));
-        let delay_problem = Arc::new(input.delay_problem(design.as_deref()));
-        let delays = self.delays.get_or_fail(Arc::clone(&delay_problem), solve)?;
+        let design = input.lead_design();
+        let (delay_problem, delays) = self.delays(input, design.as_deref(), (proofs, execution))?;
         let leads = match (&delays, design) {
             (Err(error), Some(_)) => return Ok(Err(ConditionFailure::Delays(error.clone()))),
             (Ok(delays), Some(design)) => Some(ChannelLeads::new(design, delays.channels())),
@@ -222,6 +338,7 @@ impl ConditionStages {
         };
         let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
             (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
@@ -232,14 +349,15 @@ impl ConditionStages {
 }
 
 /// What the comparison of the representatives of a condition depends on.
-fn comparison_key(study: &Study, condition: ConditionId) -> ComparisonKey {
+fn comparison_key(study: &Study, condition: ConditionId, couplings: Option<&Arc<FittedCouplings>>) -> ComparisonKey {
     let settings = &study.settings;
     let figures_key = ((settings.band, settings.points), study.dataset.measuring_pairs(), settings.coherence_threshold);
-    (figures_key, study.choice(condition).of_models(), settings.cost_average, settings.gain_source)
+    let choice = study.choice(condition).of_models();
+    (figures_key, choice, settings.cost_average, settings.gain_source, couplings.cloned())
 }
 
 /// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
-const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
+pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
 
 /// What the optima of a condition are asked for.
 struct SolveInput<'a> {
@@ -261,6 +379,12 @@ impl<'a> SolveInput<'a> {
         let by_quantile = || delay_upper_s(mismatch, measuring, omega, settings.quantile);
         let delay_upper_s = settings.delay_upper_s.unwrap_or_else(by_quantile);
         Self { settings, measuring, omega, mismatch, delta, delay_upper_s }
+    }
+
+    /// What lead filters have in common, where leads are asked for.
+    fn lead_design(&self) -> Option<Arc<LeadDesign>> {
+        let is_asked = self.settings.phase == PhaseCorrection::Lead;
+        is_asked.then(|| Arc::new(LeadDesign::new(self.settings.lead, self.omega.into())))
     }
 
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {

@@ -15,28 +15,29 @@ use crate::executor::{Executor, Sequential, Task};
 use crate::response::{FrequencyGrid, FrequencyResponse};
 use crate::schedule::CostChange;
 
-static REFERENCE: LazyLock<Value> =
+pub(super) static REFERENCE: LazyLock<Value> =
     LazyLock::new(|| serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap());
 /// A dataset with delays or leads, nothing rejected.
-struct Example {
-    dataset: Arc<Dataset>,
-    analysis: Analysis,
+pub(super) struct Example {
+    pub(super) dataset: Arc<Dataset>,
+    pub(super) analysis: Analysis,
 }
 
 /// The reference dataset, of which the known answers are.
-static EXAMPLE: LazyLock<Example> =
+pub(super) static EXAMPLE: LazyLock<Example> =
     LazyLock::new(|| Example::of(include_bytes!("../../../../tests/data/reference/example-dataset.json.gz")));
-static FEEDBACK: LazyLock<CouplingFit> = LazyLock::new(|| fit(&EXAMPLE.problem(CouplingKind::MixingAndFeedback)));
+pub(super) static FEEDBACK: LazyLock<CouplingFit> =
+    LazyLock::new(|| fit(&EXAMPLE.problem(CouplingKind::MixingAndFeedback)));
 
-fn number(value: &Value) -> f64 {
+pub(super) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-fn list(value: &Value) -> &[Value] {
+pub(super) fn list(value: &Value) -> &[Value] {
     value.as_array().unwrap()
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub(super) fn numbers(value: &Value) -> Vec<f64> {
     list(value).iter().map(number).collect()
 }
 
@@ -125,7 +126,7 @@ impl Example {
         mean_delays_s(&delays_s).unwrap()
     }
 
-    fn problem(&self, kind: CouplingKind) -> CouplingProblem {
+    pub(super) fn problem(&self, kind: CouplingKind) -> CouplingProblem {
         let settings = &self.analysis.study.settings;
         let grid = FrequencyGrid::logarithmic(settings.band, settings.points);
         let delays_s = self.mean_delays_s();
@@ -192,12 +193,12 @@ impl Example {
     }
 }
 
-fn fit(problem: &CouplingProblem) -> CouplingFit {
+pub(super) fn fit(problem: &CouplingProblem) -> CouplingFit {
     fit_couplings(problem, &Sequential, &Unobserved).unwrap()
 }
 
 #[track_caller]
-fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
+pub(super) fn assert_close(what: &str, found: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(found.len(), expected.len(), "{what}");
     for (place, (found, expected)) in found.iter().zip(expected).enumerate() {
         assert!((found - expected).abs() < tolerance, "{what}, {place}: found {found}, expected {expected}");
@@ -209,7 +210,7 @@ fn row_by_row(matrix: &DMatrix<f64>) -> Vec<f64> {
 }
 
 /// `[on-axis, others]` of the corrected J, in the mean over the conditions.
-fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 2] {
+pub(super) fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 2] {
     let mut sums = [(0.0, 0.0); 2];
     for table in of {
         for (pair, change) in table.iter() {

@@ -4,21 +4,23 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
-use crate::dataset::{Band, ConditionId, Dataset};
+use crate::dataset::{Band, Condition, ConditionId, Dataset};
 use crate::executor::{Executor, Sequential};
 use crate::response::FrequencyGrid;
 use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
     Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionStages, ConventionDoubt, Execution, KnownModels, Memo, Progress,
-    Purpose, Study, Uncertainty, assessed, convention_doubts, model_count,
+    ConditionModels, ConditionResponses, ConditionStages, ConventionDoubt, CouplingFitKey, CouplingOutcome,
+    CouplingSource, Execution, FittedCouplings, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
+    convention_doubts, model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.
 /// Responses (numbers of the model, band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
 /// gains, delays (constraints, weights, alpha, bounds) -> schedule -> assessment.
+/// Where couplings are asked for, they are fitted to the representatives and what follows these is of physics models with couplings.
 ///
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
 pub struct Engine {
@@ -27,6 +29,7 @@ pub struct Engine {
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     known: KnownModels,
+    couplings: Memo<CouplingFitKey, CouplingOutcome>,
     conditions: BTreeMap<ConditionId, ConditionStages>,
     /// The condition drawn last.
     drawn: Option<ConditionId>,
@@ -54,6 +57,7 @@ impl Engine {
             proofs: ProofBudget::default(),
             dataset: None,
             known: KnownModels::default(),
+            couplings: Memo::default(),
             conditions: BTreeMap::new(),
             drawn: None,
             curves: Memo::default(),
@@ -67,10 +71,16 @@ impl Engine {
             proofs: self.proofs,
             dataset: self.dataset.clone(),
             known: self.known.clone(),
+            couplings: self.couplings.clone(),
             conditions: self.conditions.clone(),
             drawn: self.drawn,
             curves: self.curves.clone(),
         }
+    }
+
+    /// Who carries out its work.
+    pub(super) fn executor(&self) -> &dyn Executor {
+        self.executor.as_ref()
     }
 
     /// The same engine with another budget for the proof of each condition's gains.
@@ -97,17 +107,20 @@ impl Engine {
     ) -> Result<Analysis, Cancelled> {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        let total = study.dataset.conditions().iter().map(|of| ConditionStages::steps(of)).sum();
-        let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let mut conditions = analyze_conditions(&mut self.conditions, study, &grid, (self.proofs, first), &execution)?;
+        let execution = Execution::new(self.executor.as_ref(), progress, steps(study));
+        let couplings = fit_of(study, &grid, (&mut self.couplings, &mut self.conditions), (self.proofs, &execution))?;
+        let coupled = (&grid, couplings.as_ref().and_then(|outcome| outcome.as_ref().ok()));
+        let mut conditions =
+            analyze_conditions(&mut self.conditions, study, coupled, (self.proofs, first), &execution)?;
         let doubts = doubts_of(study, &mut conditions);
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
         let (study, omega) = (study.clone(), grid.omega().into());
+        let assessment = BTreeMap::new();
         let mut analysis =
-            Analysis { study, omega, conditions, doubts, schedule, assessment: BTreeMap::new(), uncertainty: None };
+            Analysis { study, omega, conditions, couplings, doubts, schedule, assessment, uncertainty: None };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
         let ids: Vec<ConditionId> =
             analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
@@ -132,7 +145,7 @@ impl Engine {
         let analysed =
             self.conditions.iter_mut().filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
         let substitutions = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
-            Ok((id, stages.substitutions(study, condition, &grid, &execution)?))
+            Ok((id, stages.substitutions(study, (condition, analysis.fitted_couplings()), &grid, &execution)?))
         })?;
         Ok(Uncertainty::of(analysis, &substitutions))
     }
@@ -158,7 +171,7 @@ impl Engine {
         let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
-            let ConditionResponses { physics, identified } =
+            let ConditionResponses { physics, identified, .. } =
                 models.responses(Purpose::Drawing, key, &grid, &execution)?;
             Ok(Arc::new(ConditionCurves { condition: Arc::clone(models.condition()), grid, physics, identified }))
         })?;
@@ -201,11 +214,38 @@ pub struct WantedFirst<'a> {
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
+/// Steps of an analysis: those of the conditions, and once more of those that couplings are fitted to.
+fn steps(study: &Study) -> usize {
+    let of = |condition: &Arc<Condition>| {
+        let is_fitted_to = study.settings.couplings.kind().is_some() && !study.choice(condition.id()).held_out;
+        ConditionStages::steps(condition) * if is_fitted_to { 2 } else { 1 }
+    };
+    study.dataset.conditions().iter().map(of).sum()
+}
+
+/// The couplings of a study, fitted to the conditions that are analysed and not held out; none where they are not asked for (M16.1).
+fn fit_of(
+    study: &Study,
+    grid: &FrequencyGrid,
+    (kept, stages): (&mut Memo<CouplingFitKey, CouplingOutcome>, &mut BTreeMap<ConditionId, ConditionStages>),
+    (proofs, execution): (ProofBudget, &Execution<'_>),
+) -> Result<Option<CouplingOutcome>, Cancelled> {
+    let Some(kind) = study.settings.couplings.kind() else { return Ok(None) };
+    let chosen = stages.iter_mut().filter(|(id, _)| !study.choice(**id).held_out).collect();
+    let sources = execution.each_mut(chosen, |(_, stages): (&ConditionId, &mut ConditionStages)| {
+        stages.coupling_source(study, grid, proofs, execution)
+    })?;
+    let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
+    let key = CouplingFitKey::of(study, kind, &sources);
+    let fit = kept.get_or_fail(key, |key| key.fit(study, grid, &sources, execution.parts()))?;
+    Ok(Some(fit))
+}
+
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
 fn analyze_conditions(
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
     study: &Study,
-    grid: &FrequencyGrid,
+    coupled: (&FrequencyGrid, Option<&Arc<FittedCouplings>>),
     (proofs, first): (ProofBudget, Option<WantedFirst>),
     execution: &Execution<'_>,
 ) -> Result<Outcomes, Cancelled> {
@@ -213,13 +253,13 @@ fn analyze_conditions(
     if let Some(first) = first
         && let Some(stages) = stages.get_mut(&first.condition)
     {
-        let outcome = stages.analyze(study, grid, proofs, execution)?;
+        let outcome = stages.analyze(study, coupled, proofs, execution)?;
         (first.tell)(&outcome);
         outcomes.insert(first.condition, outcome);
     }
     let others = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
     let others = execution.each_mut(others, |(id, stages): (&ConditionId, &mut ConditionStages)| {
-        Ok((*id, stages.analyze(study, grid, proofs, execution)?))
+        Ok((*id, stages.analyze(study, coupled, proofs, execution)?))
     })?;
     outcomes.extend(others);
     Ok(outcomes)
@@ -228,7 +268,8 @@ fn analyze_conditions(
 /// Signs and units that are to be asked after, told to each condition that shows them too.
 fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
     let solved = outcomes.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
-    let mismatches = solved.map(|(id, result)| (id, &result.comparison.representative.mismatch));
+    // Signs and units are those of the models as they are.
+    let mismatches = solved.map(|(id, result)| (id, &result.before_couplings().representative.mismatch));
     let doubts = convention_doubts(&mismatches.collect::<Vec<_>>(), &study.dataset.measuring_pairs());
     for (id, result) in outcomes.iter_mut().filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?))) {
         result.doubts = doubts.iter().filter(|doubt| doubt.conditions.contains(id)).cloned().collect();

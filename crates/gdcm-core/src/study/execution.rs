@@ -30,6 +30,11 @@ impl<'a> Execution<'a> {
         self.progress
     }
 
+    /// Who carries out the pieces, and who is told of the progress.
+    pub(super) fn parts(&self) -> (&'a dyn Executor, &'a dyn Progress) {
+        (self.executor, self.progress)
+    }
+
     /// `count` steps more are done. Every hundredth of the total is told.
     pub(super) fn step(&self, count: usize) {
         let before = self.done.fetch_add(count, Ordering::Relaxed);

@@ -9,11 +9,16 @@ mod comparison;
 mod condition_responses;
 mod condition_stages;
 mod convention_doubt;
+mod coupled_condition;
+mod couplings_assessment;
+mod couplings_cost;
+mod couplings_words;
 mod decision_difference;
 mod derivation;
 mod edit;
 mod engine;
 mod execution;
+mod fitted_couplings;
 mod identify_job;
 mod job;
 mod lead_compensation;
@@ -42,11 +47,15 @@ pub use comparison::*;
 pub use condition_responses::*;
 use condition_stages::*;
 pub use convention_doubt::*;
+pub use coupled_condition::*;
+pub use couplings_assessment::*;
+pub use couplings_cost::*;
 pub use decision_difference::*;
 pub use derivation::{Derivation, ExplainTarget, derivation};
 pub use edit::*;
 pub use engine::*;
 pub use execution::*;
+pub use fitted_couplings::*;
 pub use identify_job::*;
 pub use job::*;
 pub use lead_compensation::*;
@@ -64,5 +73,9 @@ pub use substitutions::*;
 pub use table::*;
 pub use uncertainty::*;
 
+#[cfg(test)]
+mod coupled_analysis_tests;
+#[cfg(test)]
+mod couplings_assessment_tests;
 #[cfg(test)]
 mod couplings_example_tests;

@@ -8,7 +8,8 @@ use crate::response::LeadOrder;
 use crate::schedule::{ScheduleKind, ScheduledQuantity, SecondVariable};
 
 use super::{
-    Choice, Control, DEFAULT_COHERENCE, DelayFrom, Digits, Kind, PhaseCorrection, Place, Setting, Settings, Study, Unit,
+    Choice, Control, CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, Digits, Kind, PhaseCorrection, Place, Setting,
+    Settings, Study, Unit,
 };
 
 const PURE: Unit = Unit { file: "", shown: "", scale: 1.0 };
@@ -158,6 +159,27 @@ pub static LEAD_LIMIT: Setting = row(
 .at(Place::Beside, "R_max", "R_max of the lead filters")
 .digits(0.1, Digits::Significant)
 .where_it(has_leads);
+
+/// What corrects couplings and modes.
+pub static COUPLINGS: Setting = row(
+    ["couplings", "couplings", "--couplings"],
+    "What corrects couplings and modes, the same for all conditions, before the channels are corrected: nothing, a mixing of the \
+     inputs, or a mixing and a feedback of outputs to inputs (M16)",
+    choice(
+        &[
+            ["none", "none", "Gains, delays and leads of the channels alone (the paper)"],
+            ["mixing", "mixing", "Each input takes constant shares of the others (M16)"],
+            [
+                "feedback",
+                "mixing and feedback",
+                "Each input takes constant shares of the others and of the outputs: moves the modes too (M16)",
+            ],
+        ],
+        |of| of.couplings.index(),
+        |of, index| of.couplings = CouplingCorrection::ALL[index],
+    ),
+)
+.at(Place::Top, "Couplings", "Couplings");
 
 /// Band of comparison.
 pub static BAND: Setting = row(
@@ -457,7 +479,7 @@ pub static SECOND_VARIABLE: Setting = row(
 .at(Place::Line, "Scheduled over", "Second variable of the schedule");
 
 /// Every setting but which responses are held and ignored, in the order in which they are told.
-pub static SETTINGS: [&Setting; 28] = [
+pub static SETTINGS: [&Setting; 29] = [
     &ALPHA_GAIN,
     &ALPHA_DELAY,
     &PHASE,
@@ -465,6 +487,7 @@ pub static SETTINGS: [&Setting; 28] = [
     &LEAD_ORDER,
     &LEAD_POLE,
     &LEAD_LIMIT,
+    &COUPLINGS,
     &BAND,
     &POINTS,
     &QUANTILE,

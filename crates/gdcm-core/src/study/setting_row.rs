@@ -8,7 +8,7 @@ use crate::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVar
 use crate::units::number;
 
 use super::setting::SETTINGS;
-use super::{DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings, Study};
+use super::{CouplingCorrection, DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings, Study};
 
 /// One setting: a row of [`SETTINGS`].
 #[derive(Debug)]
@@ -173,6 +173,10 @@ pub trait Choice: Copy + PartialEq + 'static {
 
 impl Choice for PhaseCorrection {
     const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
+}
+
+impl Choice for CouplingCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
 }
 
 impl Choice for DelayFrom {

@@ -6,6 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
+use crate::couplings::CouplingKind;
 use crate::dataset::limits::MOST_PAIRS;
 use crate::dataset::{Band, Dataset, PairTable};
 use crate::fidelity::CostAverage;
@@ -30,6 +31,40 @@ pub enum PhaseCorrection {
     Delay,
     /// By one signed delay a channel: a delay, or a lead filter where it is negative (M15).
     Lead,
+}
+
+/// What corrects the couplings and modes of the physics models before their channels are corrected (M16).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CouplingCorrection {
+    /// Nothing: the physics models stay as they are (the paper).
+    #[default]
+    None,
+    /// A mixing of the inputs.
+    Mixing,
+    /// A mixing of the inputs, and a feedback of outputs to inputs.
+    #[serde(rename = "feedback")]
+    MixingAndFeedback,
+}
+
+impl CouplingCorrection {
+    /// What it is called in sentences; none: "no couplings".
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "no couplings",
+            Self::Mixing => "mixing",
+            Self::MixingAndFeedback => "mixing and feedback",
+        }
+    }
+
+    /// What is to be fitted; none where nothing is.
+    pub fn kind(self) -> Option<CouplingKind> {
+        match self {
+            Self::None => None,
+            Self::Mixing => Some(CouplingKind::Mixing),
+            Self::MixingAndFeedback => Some(CouplingKind::MixingAndFeedback),
+        }
+    }
 }
 
 /// Which D the delays are fitted to. Leads are always fitted to the band delay (M15.5).
@@ -110,6 +145,9 @@ pub struct Settings<R = PairTable<bool>> {
     /// What lead filters have in common (M15.3).
     #[serde(default, skip_serializing_if = "is_default")]
     pub lead: LeadSettings,
+    /// What corrects couplings and modes (M16).
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub couplings: CouplingCorrection,
     /// Mismatch \[dB\] up to which a loop of held gains counts as agreeing: each is then held at the nearest that does.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
@@ -151,6 +189,7 @@ impl<R> Settings<R> {
             phase: self.phase,
             delay_from: self.delay_from,
             lead: self.lead,
+            couplings: self.couplings,
             agreement_db: self.agreement_db,
             schedule: self.schedule,
             gain_source: self.gain_source,
@@ -179,6 +218,7 @@ impl Settings {
             phase: PhaseCorrection::default(),
             delay_from: DelayFrom::default(),
             lead: LeadSettings::default(),
+            couplings: CouplingCorrection::default(),
             agreement_db: DEFAULT_AGREEMENT_DB,
             schedule: ScheduleSettings::default(),
             gain_source: GainSource::default(),

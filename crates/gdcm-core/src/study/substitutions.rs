@@ -12,7 +12,8 @@ use crate::uncertainty::{
 };
 
 use super::{
-    Analysis, Cancelled, Compared, ConditionAnalysis, ConditionResponses, Execution, Mismatches, Settings, Study,
+    Analysis, Cancelled, Compared, ConditionAnalysis, ConditionResponses, Execution, FittedCouplings, Mismatches,
+    Settings, Study,
 };
 
 /// What came of the substitutions of one condition.
@@ -31,6 +32,7 @@ pub(super) struct Substituting<'a> {
     pub(super) analysis: &'a ConditionAnalysis,
     pub(super) grid: &'a FrequencyGrid,
     pub(super) responses: &'a ConditionResponses,
+    pub(super) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
 /// What comes of a substitution: the correction, and the G that it was asked for, and both D \[s\].
@@ -65,8 +67,9 @@ impl SubstitutedOptimum {
     }
 }
 
-/// What a substitution depends on besides the two models: the settings of the analysis, and the representatives, beside which phases lie.
-type SwapKey = (Settings, PairTable<bool>, [usize; 2]);
+/// What a substitution depends on besides the two models: the settings of the analysis, the representatives, beside which phases lie, and
+/// the couplings.
+type SwapKey = (Settings, PairTable<bool>, [usize; 2], Option<Arc<FittedCouplings>>);
 
 /// The substitutions made last, by the physics and the identified model: a model that is rejected or restored leaves the others'.
 #[derive(Clone, Debug, Default)]
@@ -107,7 +110,7 @@ impl Substituting<'_> {
         settings.schedule = Default::default();
         settings.uncertainty = Default::default();
         settings.gain_source = GainSource::Representatives;
-        (settings, self.study.dataset.measuring_pairs(), self.representatives())
+        (settings, self.study.dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())
     }
 
     fn compared(&self, kind: BundleKind, model: usize) -> Compared {

@@ -1,0 +1,247 @@
+//! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4).
+
+use nalgebra::{Complex, DMatrix};
+
+use crate::couplings::{
+    FeedbackShare, LEAST_CONDITIONS, LoopMargin, MixingShare, Unknown, cyclic_inputs, feedback_shares, mixing_shares,
+};
+use crate::dataset::{Channel, ConditionId, Dataset, Pair};
+use crate::units::{number, signed, telling};
+
+use super::{CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
+
+/// Entries told of each matrix, the largest.
+const TOLD: usize = 3;
+/// Shares below this say nothing.
+const NOTHING: f64 = 0.005;
+
+impl CouplingsAssessment {
+    /// All that has to be said: the diagnosis, what couplings are worth, and the cautions.
+    pub fn remarks(&self, dataset: &Dataset) -> Vec<Remark> {
+        let good = |text: String| Remark::new(RemarkKind::Good, text);
+        let diagnosis = self.diagnosis(dataset).into_iter().map(good);
+        diagnosis.chain(self.verdict()).chain(self.price(dataset).map(good)).chain(self.cautions(dataset)).collect()
+    }
+
+    /// What the largest entries that are told from nothing mean: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°"; "PED follows NY
+    /// by 1.2 % per m/s²: directional stiffness that the physics model does not have".
+    pub fn diagnosis(&self, dataset: &Dataset) -> Vec<String> {
+        let airspeed_kt = self.mean_airspeed_kt();
+        let is_told = |entries: &DMatrix<CouplingEntry>, place: (usize, usize)| !entries[place].is_within_bar;
+        let is_rate = |output: usize| is_rate(&dataset.outputs()[output]);
+        let (mixing, feedback) = (self.mixing(airspeed_kt), self.feedback());
+        let matrices = self.fitted.matrices();
+        let cyclic = cyclic_inputs(dataset.on_axis(), is_rate);
+        let mixed = mixing_shares(&matrices.normalised_mixing(airspeed_kt), cyclic);
+        let mixed = mixed.into_iter().filter(|of| is_told(&mixing, (of.to, of.from)) && of.share.abs() >= NOTHING);
+        let fed = feedback_shares(&self.fitted.problem, matrices).into_iter();
+        let fed = fed.filter(|of| is_told(&feedback, (of.input, of.output)) && of.share >= NOTHING);
+        let mixed = mixed.take(TOLD).map(|of| mixing_words(dataset, &of));
+        mixed.chain(fed.take(TOLD).map(|of| feedback_words(dataset, &of))).collect()
+    }
+
+    /// Whether J of conditions left out says that couplings are worth it.
+    fn verdict(&self) -> Vec<Remark> {
+        let cost = self.deciding_cost();
+        let ([Some(others), Some(without)], on_axis) =
+            ([cost.with.others, cost.without.others], cost.with.on_axis.zip(cost.without.on_axis))
+        else {
+            return Vec::new();
+        };
+        let where_from = if self.costs.left_out.is_some() { "conditions left out" } else { "the schedule" };
+        let text = format!(
+            "Off the axis, J of {where_from} is {} without couplings and {} with {}{}.",
+            telling(without, 1),
+            telling(others, 1),
+            self.couplings.name(),
+            on_axis.map_or_else(String::new, |(with, without)| {
+                format!("; on the axis {} and {}", telling(without, 1), telling(with, 1))
+            })
+        );
+        let mut remarks = vec![Remark::new(RemarkKind::Good, text)];
+        if !cost.is_worth_it() {
+            let text = format!(
+                "Off the axis, J of {where_from} is not at least a tenth less with {}: switch the couplings off.",
+                self.couplings.name()
+            );
+            remarks.push(Remark::new(RemarkKind::Caution, text));
+        }
+        remarks
+    }
+
+    /// What the couplings do above the band, and how far poles move in it.
+    fn price(&self, dataset: &Dataset) -> impl Iterator<Item = String> {
+        let above =
+            self.conditions.iter().filter_map(|(id, of)| Some((*id, of.most_changed_above_band(dataset.on_axis())?)));
+        let above = above.max_by(|a, b| a.1.1.total_cmp(&b.1.1)).filter(|(_, (_, change_db))| change_db.is_finite());
+        let top = self.omega.last().copied().unwrap_or_default();
+        let above = above.map(|(id, (pair, change_db))| {
+            format!(
+                "Above the band, at {} rad/s, the couplings change {} most of the on-axis responses: by {} dB of it (condition {id}).",
+                number(top),
+                dataset.pair_name(pair),
+                signed(change_db, 0)
+            )
+        });
+        above.into_iter().chain(self.farthest_pole())
+    }
+
+    fn farthest_pole(&self) -> Option<String> {
+        let in_band = |omega: f64| (self.band.min()..=self.band.max()).contains(&omega);
+        let moved = self.conditions.iter().flat_map(|(id, of)| of.poles.iter().flatten().map(|shift| (*id, shift)));
+        let moved = moved.filter_map(|(id, shift)| {
+            let before = shift.before.filter(|before| in_band(before.norm()))?;
+            Some((id, before, shift.after, shift.distance_rad_s()?))
+        });
+        let (id, before, after, distance_rad_s) = moved.max_by(|a, b| a.3.total_cmp(&b.3))?;
+        (distance_rad_s > 0.0).then(|| {
+            format!(
+                "Poles within the band move by up to {} rad/s: from {} to {} (condition {id}).",
+                telling(distance_rad_s, 2),
+                pole_words(before),
+                pole_words(after)
+            )
+        })
+    }
+
+    /// What the engineer has to know before the couplings are used.
+    pub fn cautions(&self, dataset: &Dataset) -> Vec<Remark> {
+        let caution = |text: String| Remark::new(RemarkKind::Caution, text);
+        let mut remarks: Vec<Remark> = self.unstable_words();
+        remarks.extend(self.ringing_words().map(caution));
+        let conditions = self.fitted.problem.conditions.len();
+        if conditions < LEAST_CONDITIONS {
+            remarks.push(caution(format!(
+                "Couplings of {conditions} {}: three are needed for error bars and for J of conditions left out.",
+                if conditions == 1 { "condition" } else { "conditions" }
+            )));
+        }
+        let fit = &self.fitted.fit;
+        if !fit.not_fed_back.is_empty() {
+            let names = fit.not_fed_back.iter().map(|&output| dataset.outputs()[output].name.as_str());
+            remarks.push(caution(format!(
+                "{} cannot be fed back: some input has no response of it in any condition.",
+                names.collect::<Vec<_>>().join(", ")
+            )));
+        }
+        remarks.extend(undetermined_words(dataset, &fit.undetermined).map(caution));
+        let failed = self.conditions.iter().filter_map(|(id, of)| Some((*id, of.poles.as_ref().err()?)));
+        remarks.extend(failed.map(|(id, why)| caution(format!("Condition {id}: poles are not known: {why}."))));
+        remarks
+    }
+
+    /// Poles of the representatives one by one, those of the other kept models counted.
+    fn unstable_words(&self) -> Vec<Remark> {
+        let remark = |of: &UnstablePole, text: String| {
+            Remark::new(if of.is_in_band { RemarkKind::Trouble } else { RemarkKind::Caution }, text)
+        };
+        let of_representatives = self.unstable.iter().filter(|of| of.is_representative).map(|of| {
+            let band = if of.is_in_band { ", in the band" } else { "" };
+            let text = format!(
+                "With the couplings the physics representative of condition {} has an unstable pole more: {}, at {} rad/s{band}.",
+                of.condition,
+                pole_words(of.pole),
+                telling(of.pole.norm(), 3)
+            );
+            remark(of, text)
+        });
+        let others: Vec<&UnstablePole> = self.unstable.iter().filter(|of| !of.is_representative).collect();
+        let worst = others.iter().max_by(|a, b| a.pole.norm().total_cmp(&b.pole.norm()));
+        let of_others = worst.map(|worst| {
+            let models = match others.len() {
+                1 => "One other kept physics model has".to_owned(),
+                count => format!("{count} poles of other kept physics models are"),
+            };
+            let what = if others.len() == 1 { "an unstable pole more" } else { "newly unstable" };
+            let text = format!(
+                "{models} {what} with the couplings, the fastest at {} rad/s ({}, condition {}).",
+                telling(worst.pole.norm(), 3),
+                worst.model,
+                worst.condition
+            );
+            remark(worst, text)
+        });
+        of_representatives.chain(of_others).collect()
+    }
+
+    fn ringing_words(&self) -> Option<String> {
+        let margins = self.conditions.iter().filter_map(|(id, of)| Some((*id, of.margin?)));
+        let (id, margin): (ConditionId, LoopMargin) = margins.min_by(|a, b| a.1.least.total_cmp(&b.1.least))?;
+        margin.is_close_to_ringing().then(|| {
+            format!(
+                "The loop is close to ringing at {} rad/s: the least singular value of I − K H is {} (condition {id}).",
+                telling(margin.omega_rad_s, 1),
+                telling(margin.least, 2)
+            )
+        })
+    }
+}
+
+/// Whether a channel is an angular rate, by its unit.
+fn is_rate(channel: &Channel) -> bool {
+    ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
+}
+
+/// Whether a channel is an acceleration, by its unit.
+fn is_acceleration(channel: &Channel) -> bool {
+    matches!(channel.unit.trim(), "g" | "m/s^2" | "m/s²" | "m/s2" | "ft/s^2" | "ft/s²" | "ft/s2")
+}
+
+/// "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°".
+fn mixing_words(dataset: &Dataset, of: &MixingShare) -> String {
+    let [to, from] = [of.to, of.from].map(|input| &dataset.inputs()[input]);
+    let share = if to.unit == from.unit {
+        format!("{} % of {}", percent(of.share), from.name)
+    } else {
+        format!("{} {} per {} of {}", number(of.share), to.unit, from.unit, from.name)
+    };
+    let phase = of.swashplate_phase_deg.filter(|_| to.unit == from.unit);
+    let phase = phase.map_or_else(String::new, |phase| format!(": as a swashplate phase of {}°", telling(phase, 1)));
+    format!("{} takes {share}{phase}.", to.name)
+}
+
+/// "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model does not have".
+fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
+    let (input, output) = (&dataset.inputs()[of.input], &dataset.outputs()[of.output]);
+    let is_of = |output: usize| dataset.on_axis()[Pair::new(output, of.input)];
+    let has_rate = (0..dataset.outputs().len()).any(|at| is_of(at) && is_rate(&dataset.outputs()[at]));
+    let meaning = match (is_of(of.output), has_rate) {
+        (true, true) if is_acceleration(output) => "stiffness",
+        (true, _) if is_rate(output) => "damping",
+        _ => "a coupling",
+    };
+    format!(
+        "{} follows {} by {} {} per {}, up to {} % of {} at {} rad/s: {meaning} that the physics model does not have right.",
+        input.name,
+        output.name,
+        telling(of.entry, 3),
+        input.unit,
+        output.unit,
+        percent(of.share),
+        dataset.inputs()[of.moved].name,
+        telling(of.omega_rad_s, 1)
+    )
+}
+
+fn percent(share: f64) -> String {
+    telling(100.0 * share, 1)
+}
+
+/// "−0.30 ± 1.20j rad/s".
+fn pole_words(pole: Complex<f64>) -> String {
+    let imaginary = pole.im.abs();
+    let imaginary = if imaginary > 0.0 { format!(" ± {}j", telling(imaginary, 2)) } else { String::new() };
+    format!("{}{imaginary} rad/s", signed(pole.re, 3))
+}
+
+fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String> {
+    let (inputs, outputs) = dataset.names_of_channels();
+    let name = |unknown: &Unknown| match *unknown {
+        Unknown::Mixing { to, from, .. } => format!("{} of {}", inputs[to], inputs[from]),
+        Unknown::Feedback { input, output } => format!("{} of {}", inputs[input], outputs[output]),
+    };
+    let names: Vec<String> = unknowns.iter().map(name).collect();
+    (!names.is_empty()).then(|| {
+        format!("No response says anything of these entries, which stay as without couplings: {}.", names.join(", "))
+    })
+}

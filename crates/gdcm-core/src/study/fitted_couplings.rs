@@ -1,0 +1,188 @@
+//! The couplings of a study: what they are fitted to, and what was found (M16.1, M16.2).
+
+use std::sync::Arc;
+
+use crate::correction::{Channels, LeadDesign, LeadSettings};
+use crate::couplings::{
+    CouplingCondition, CouplingError, CouplingFit, CouplingKind, CouplingMatrices, CouplingOptions, CouplingProblem,
+    coherence_deviation, fit_couplings, mean_delays_s, response_deviation, without_channels,
+};
+use crate::dataset::{BundleKind, Condition, ConditionId, ContentHash, Dynamics, Model, ModelBands, PairTable};
+use crate::executor::Executor;
+use crate::fidelity::CoherenceWeights;
+use crate::progress::Untold;
+use crate::response::{FrequencyGrid, FrequencyResponse, coherence_at};
+
+use super::{Cancelled, Comparison, GridKey, PhaseCorrection, Progress, Study};
+
+/// The couplings of a study.
+#[derive(Clone, Debug)]
+pub struct FittedCouplings {
+    /// What they were fitted to: the representatives of the conditions that are analysed and not held out.
+    pub problem: CouplingProblem,
+    /// What was found.
+    pub fit: CouplingFit,
+}
+
+impl PartialEq for FittedCouplings {
+    /// Two fits of the same numbers couple every model alike, whatever they were fitted to.
+    fn eq(&self, other: &Self) -> bool {
+        self.fit == other.fit
+    }
+}
+
+impl FittedCouplings {
+    /// Mixing and feedback.
+    pub fn matrices(&self) -> &CouplingMatrices {
+        &self.fit.matrices
+    }
+
+    /// Whether the couplings were fitted to a condition.
+    pub fn is_fitted_to(&self, condition: ConditionId) -> bool {
+        self.problem.conditions.iter().any(|of| of.id == condition)
+    }
+}
+
+/// The couplings that were asked for, or why there are none.
+pub(super) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
+
+/// What one condition brings to the fit: its representatives, and what its channels get without couplings.
+pub(super) struct CouplingSource {
+    pub(super) condition: Arc<Condition>,
+    pub(super) comparison: Arc<Comparison>,
+    /// Signed delays of the channels \[s\] (M9, M15).
+    pub(super) delays_s: Channels<f64>,
+    /// Hashes of the physics and of the identified representative.
+    pub(super) contents: [ContentHash; 2],
+    /// Response of the physics representative.
+    pub(super) physics: Arc<FrequencyResponse>,
+    /// Response of the identified representative.
+    pub(super) flight: Arc<FrequencyResponse>,
+}
+
+impl CouplingSource {
+    fn identified(&self) -> &Model {
+        &self.condition.bundle(BundleKind::Identified)[self.comparison.identified.model]
+    }
+
+    fn airspeed_kt(&self) -> f64 {
+        self.condition.flight_state().airspeed_kt
+    }
+
+    fn usable(&self) -> PairTable<bool> {
+        self.comparison.representative.mismatch.map(|_, mismatch| mismatch.is_some())
+    }
+}
+
+/// What a fit depends on in one condition.
+#[derive(Clone, Debug, PartialEq)]
+struct ConditionKey {
+    id: ConditionId,
+    airspeed_kt: f64,
+    /// Hashes of the physics and of the identified representative.
+    contents: [ContentHash; 2],
+    usable: PairTable<bool>,
+    bands: Option<Arc<ModelBands>>,
+}
+
+/// All that a fit depends on: neither the weight of the gains nor their bounds are in it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct CouplingFitKey {
+    kind: CouplingKind,
+    grid: GridKey,
+    on_axis: PairTable<bool>,
+    airspeed_tolerance_kt: f64,
+    lead: Option<LeadSettings>,
+    coherence: Option<f64>,
+    /// Number and length \[s\] of the averages of measured responses that do not say it, and whether they overlap by half.
+    averaging: (Option<f64>, Option<f64>, bool),
+    delays_s: Option<Channels<f64>>,
+    conditions: Vec<ConditionKey>,
+}
+
+impl CouplingFitKey {
+    pub(super) fn of(study: &Study, kind: CouplingKind, sources: &[CouplingSource]) -> Self {
+        let settings = &study.settings;
+        let averaging = &settings.uncertainty;
+        let condition = |of: &CouplingSource| ConditionKey {
+            id: of.condition.id(),
+            airspeed_kt: of.airspeed_kt(),
+            contents: of.contents,
+            usable: of.usable(),
+            bands: of.identified().bands.clone(),
+        };
+        Self {
+            kind,
+            grid: (settings.band, settings.points),
+            on_axis: study.dataset.on_axis().clone(),
+            airspeed_tolerance_kt: settings.schedule.airspeed_tolerance_kt,
+            lead: (settings.phase == PhaseCorrection::Lead).then_some(settings.lead),
+            coherence: settings.coherence_threshold,
+            averaging: (averaging.averages, averaging.window_s, averaging.half_overlap),
+            delays_s: mean_delays_s(&sources.iter().map(|of| of.delays_s.clone()).collect::<Vec<_>>()),
+            conditions: sources.iter().map(condition).collect(),
+        }
+    }
+
+    /// The problem of these sources (M16.1).
+    fn problem(&self, study: &Study, grid: &FrequencyGrid, sources: &[CouplingSource]) -> CouplingProblem {
+        let omega: Arc<[f64]> = grid.omega().into();
+        let design = self.lead.map(|lead| LeadDesign::new(lead, Arc::clone(&omega)));
+        let condition = |of: &CouplingSource| {
+            let dynamics = &of.identified().dynamics;
+            let flight = self.delays_s.as_ref().map_or_else(
+                || (*of.flight).clone(),
+                |delays_s| without_channels(&of.flight, &omega, delays_s, design.as_ref()),
+            );
+            CouplingCondition {
+                id: of.condition.id(),
+                airspeed_kt: of.airspeed_kt(),
+                physics: Arc::clone(&of.physics),
+                flight,
+                usable: of.usable(),
+                deviation: deviation(study, of.identified(), &omega),
+                coherence: CoherenceWeights::of_model(dynamics, &omega, self.coherence),
+            }
+        };
+        CouplingProblem {
+            kind: self.kind,
+            conditions: sources.iter().map(condition).collect(),
+            on_axis: self.on_axis.clone(),
+            options: CouplingOptions {
+                airspeed_tolerance_kt: self.airspeed_tolerance_kt,
+                ..CouplingOptions::default()
+            },
+            omega,
+        }
+    }
+
+    /// The couplings of these sources, or why there are none.
+    pub(super) fn fit(
+        &self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        sources: &[CouplingSource],
+        (executor, progress): (&dyn Executor, &dyn Progress),
+    ) -> Result<CouplingOutcome, Cancelled> {
+        let problem = self.problem(study, grid, sources);
+        match fit_couplings(&problem, executor, &Untold(progress)) {
+            Err(CouplingError::Cancelled(cancelled)) => Err(cancelled),
+            Err(error) => Ok(Err(error)),
+            Ok(fit) => Ok(Ok(Arc::new(FittedCouplings { problem, fit }))),
+        }
+    }
+}
+
+/// Standard deviation of `ln H` that the bands of an identified model tell, or its coherence where that counts (M16.2).
+fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
+    if let Some(bands) = &identified.bands {
+        return Some(response_deviation(bands, omega));
+    }
+    let settings = &study.settings;
+    let (Dynamics::Measured(response), Some(_)) = (&identified.dynamics, settings.coherence_threshold) else {
+        return None;
+    };
+    let estimate = response.estimate();
+    let measurement = settings.uncertainty.measurement(estimate.averages, estimate.window_s)?;
+    Some(coherence_deviation(&coherence_at(response, omega)?, &measurement))
+}

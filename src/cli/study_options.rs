@@ -54,6 +54,8 @@ pub(super) fn analysis_of(
     }
     if with_bars {
         analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &progress)?));
+        let assessed = engine.assess_couplings(&study, study.settings.couplings, &progress)?;
+        analysis.coupling_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
     let failure = |(id, outcome): (&ConditionId, &Result<_, ConditionFailure>)| {

@@ -31,6 +31,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
         text.push('\n');
         text.push_str(&condition_section(analysis, condition));
     }
+    text.push_str(&couplings_section(analysis));
     text.push('\n');
     text.push_str(&cautions_section(analysis));
     text.push_str(&schedule_section(analysis));
@@ -74,6 +75,31 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         text.push_str(&labelled(0, "Sign", LABEL, &words));
     }
     text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
+}
+
+/// What the couplings mean, are worth and cost; nothing without couplings.
+fn couplings_section(analysis: &Analysis) -> String {
+    let said = analysis.coupling_remarks();
+    if said.is_empty() {
+        return String::new();
+    }
+    let mut text = "\n".to_owned();
+    if let Some(assessment) = &analysis.coupling_assessment {
+        text.push_str(&labelled(0, "Couplings", LABEL, &sanitized(&assessment.heading())));
+        text.push_str(&indented(&assessment.cost_table(), 2));
+        assessment.matrix_tables(&analysis.study.dataset).iter().for_each(|table| text.push_str(&indented(table, 2)));
+    }
+    for remark in &said {
+        let label = match remark.kind {
+            RemarkKind::Good => "couplings",
+            RemarkKind::Caution | RemarkKind::Trouble => "caution",
+        };
+        if remark.kind != RemarkKind::Good {
+            keep_caution(&[], &remark.text);
+        }
+        text.push_str(&detail(label, &sanitized(&remark.text)));
+    }
+    text
 }
 
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.

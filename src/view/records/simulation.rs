@@ -6,7 +6,7 @@ use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 
 use crate::view::plot::ChartLine;
 use crate::view::{Command, Palette, SMALL_SIZE, State};
-use gdcm_core::correction::{CorrectedModel, Pade};
+use gdcm_core::correction::Pade;
 use gdcm_core::dataset::{BundleKind, StateSpace};
 use gdcm_core::identification::Validation;
 use gdcm_core::study::SimulationJob;
@@ -136,7 +136,7 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     let name = shown.representative_name(BundleKind::Physics);
     let physics = state.condition().model(BundleKind::Physics, name)?.state_space()?;
     match model {
-        TimeModel::Corrected => plain(&CorrectedModel::of(physics, &shown.correction, Pade::default()).ok()?.model),
+        TimeModel::Corrected => plain(&shown.corrected_model(physics, &shown.correction, Pade::default()).ok()?.model),
         TimeModel::Identified | TimeModel::Physics => plain(physics),
     }
 }

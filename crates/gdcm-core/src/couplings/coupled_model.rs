@@ -45,6 +45,16 @@ pub enum CoupledModelError {
     Matrices(#[from] StateSpaceError),
 }
 
+impl CoupledModelError {
+    /// Why, in words that name the channels.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        match self {
+            Self::Delays(error) => error.words(inputs, outputs),
+            other => other.to_string(),
+        }
+    }
+}
+
 impl CouplingMatrices {
     /// The physics model with mixing and feedback, in continuous or discrete time; delays of its channels, which stand inside the loop,
     /// are states first: `pade` approximants, or whole samples.

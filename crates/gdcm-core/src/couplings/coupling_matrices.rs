@@ -65,6 +65,11 @@ impl CouplingMatrices {
         &self.airspeeds
     }
 
+    /// `M_to,from` over the scaled airspeed of [`CouplingMatrices::airspeeds`].
+    pub fn mixing_curve(&self, to: usize, from: usize) -> &Regression {
+        &self.mixing[to * self.feedback.nrows() + from]
+    }
+
     /// `M(V)`, m x m, `[to, from]`; outside the conditions' airspeeds that of the nearer end.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();

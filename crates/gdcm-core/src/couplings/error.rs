@@ -8,13 +8,13 @@ use crate::units::number;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
     /// There is no condition, or none has a response that both representatives have.
-    #[error("couplings: no response of the {conditions} conditions is known of both the physics model and flight")]
+    #[error("no response of the {conditions} conditions is known of both the physics model and flight")]
     NothingToFit {
         /// Number of conditions.
         conditions: usize,
     },
     /// Too few conditions for what is asked.
-    #[error("couplings: error bars need at least {needed} conditions, and there are {found}")]
+    #[error("error bars need at least {needed} conditions, and there are {found}")]
     TooFewConditions {
         /// How many it takes.
         needed: usize,
@@ -23,7 +23,7 @@ pub enum CouplingError {
     },
     /// A condition's table has another shape than the others.
     #[error(
-        "couplings: condition {condition}: expected {expected_outputs} x {expected_inputs} responses at {expected_points} \
+        "condition {condition}: expected {expected_outputs} x {expected_inputs} responses at {expected_points} \
          frequencies in every table, found {outputs} x {inputs} at {points}"
     )]
     Shape {
@@ -44,7 +44,7 @@ pub enum CouplingError {
     },
     /// The loop of a pass cannot be closed: `I - K H` is singular.
     #[error(
-        "couplings: the feedback makes the loop of condition {condition} singular at {} rad/s",
+        "the feedback makes the loop of condition {condition} singular at {} rad/s",
         number(*omega_rad_s)
     )]
     SingularLoop {
@@ -54,14 +54,14 @@ pub enum CouplingError {
         omega_rad_s: f64,
     },
     /// The normal matrix has no Cholesky factors.
-    #[error("couplings: the responses do not tell the {unknowns} entries of the mixing and the feedback apart")]
+    #[error("the responses do not tell the {unknowns} entries of the mixing and the feedback apart")]
     SingularNormalMatrix {
         /// Number of unknowns.
         unknowns: usize,
     },
     /// The mixing takes an input away or turns it around.
     #[error(
-        "couplings: the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
+        "the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
         number(*factor),
         number(*airspeed_kt)
     )]

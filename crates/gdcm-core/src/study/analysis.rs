@@ -13,8 +13,8 @@ use crate::schedule::{
 use crate::uncertainty::Scalar;
 
 use super::{
-    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, FittedCouplings, LeadCompensated, LeadOffer,
-    Study, Uncertainty, scheduled_points,
+    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, CouplingsAssessment, FittedCouplings,
+    LeadCompensated, LeadOffer, Remark, RemarkKind, Study, Uncertainty, scheduled_points,
 };
 
 /// The nominal model of a condition under the scheduled correction (M12).
@@ -40,6 +40,8 @@ pub struct Analysis {
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// The couplings that every physics model has gone through, or why there are none; nothing where they are not asked for (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
+    /// What the couplings are worth and what they cost, once that was asked for ([`super::CouplingsJob`]).
+    pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels that one side seems to have in another sign or unit: what is said first.
     pub doubts: Vec<ConventionDoubt>,
     /// The schedule of the chosen conditions.
@@ -59,6 +61,15 @@ impl Analysis {
     /// The couplings that every physics model has gone through, where there are any.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
+    }
+
+    /// What has to be said of the couplings: why there are none, or what they mean, are worth and cost, as far as that was asked for.
+    pub fn coupling_remarks(&self) -> Vec<Remark> {
+        match (&self.couplings, &self.coupling_assessment) {
+            (Some(Err(error)), _) => vec![Remark::new(RemarkKind::Trouble, format!("No couplings: {error}."))],
+            (Some(Ok(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
+            _ => Vec::new(),
+        }
     }
 
     /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.

@@ -7,7 +7,7 @@ use crate::correction::ABOVE_BAND;
 use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
 use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::{Cancelled, Execution, FittedCouplings, Memo, PhaseCorrection, Settings};
+use super::{Cancelled, ConditionAnalysis, Execution, FittedCouplings, Memo, PhaseCorrection, Settings};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -216,9 +216,47 @@ pub struct ConditionCurves {
     pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models.
     pub identified: Vec<Arc<FrequencyResponse>>,
+    coupled: CoupledCurves,
+}
+
+/// Responses with couplings that were drawn last, with what they are of: computed from the others, they make no two curves different.
+#[derive(Debug, Default)]
+struct CoupledCurves(Mutex<Vec<(Arc<FittedCouplings>, usize, Arc<FrequencyResponse>)>>);
+
+impl Clone for CoupledCurves {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl PartialEq for CoupledCurves {
+    fn eq(&self, _other: &Self) -> bool {
+        true
+    }
 }
 
 impl ConditionCurves {
+    pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
+        let ConditionResponses { physics, identified, .. } = responses;
+        Self { condition, grid, physics, identified, coupled: CoupledCurves::default() }
+    }
+
+    /// `H~` of a physics model under the couplings of a result; `H` without couplings.
+    pub fn with_couplings(&self, result: &ConditionAnalysis, model: usize) -> Arc<FrequencyResponse> {
+        /// Those of a result and of a variant, each of a representative now and before.
+        const KEPT: usize = 4;
+        let Some(coupled) = &result.coupled else { return Arc::clone(&self.physics[model]) };
+        let mut kept = self.coupled.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_of = |of: &&(Arc<FittedCouplings>, usize, _)| Arc::ptr_eq(&of.0, &coupled.fitted) && of.1 == model;
+        if let Some((.., response)) = kept.iter().find(is_of) {
+            return Arc::clone(response);
+        }
+        let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
+        kept.truncate(KEPT - 1);
+        kept.insert(0, (Arc::clone(&coupled.fitted), model, Arc::clone(&response)));
+        response
+    }
+
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         match kind {

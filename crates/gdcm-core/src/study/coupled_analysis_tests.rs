@@ -126,7 +126,7 @@ fn couplings_that_cannot_be_fitted_are_refused_in_words_and_leave_the_models_as_
     }
     let analysis = analyze(&mut engine(), &study);
     let refusal = analysis.couplings.as_ref().unwrap().as_ref().unwrap_err();
-    assert!(refusal.to_string().starts_with("couplings: no response of the 0 conditions"), "{refusal}");
+    assert!(refusal.to_string().starts_with("no response of the 0 conditions"), "{refusal}");
     let result = analysis.condition(ConditionId(1)).unwrap();
     assert_eq!(result.comparison, EXAMPLE.analysis.condition(ConditionId(1)).unwrap().comparison);
     assert!(result.coupled.is_none());

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use crate::correction::{ChannelCorrection, CorrectedModel, Pade};
 use crate::couplings::CoupledModelError;
-use crate::dataset::StateSpace;
+use crate::dataset::{Condition, StateSpace};
 use crate::response::FrequencyResponse;
 
-use super::{Comparison, ConditionAnalysis, FittedCouplings};
+use super::{Analysis, Comparison, ConditionAnalysis, FittedCouplings};
 
 /// What the couplings have changed of a condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,5 +61,27 @@ impl ConditionAnalysis {
     ) -> Result<CorrectedModel, CoupledModelError> {
         let coupled = self.coupled_model(physics, pade)?;
         Ok(CorrectedModel::of(&coupled, correction, pade)?)
+    }
+}
+
+impl Analysis {
+    /// `M_O H~ M_I` of a physics model of any condition: also of one that has no result of its own.
+    ///
+    /// # Errors
+    /// As [`ConditionAnalysis::corrected_model`].
+    pub fn corrected_model(
+        &self,
+        condition: &Condition,
+        physics: &StateSpace,
+        correction: &ChannelCorrection,
+        pade: Pade,
+    ) -> Result<CorrectedModel, CoupledModelError> {
+        let airspeed_kt = condition.flight_state().airspeed_kt;
+        match self.fitted_couplings() {
+            None => Ok(CorrectedModel::of(physics, correction, pade)?),
+            Some(fitted) => {
+                Ok(CorrectedModel::of(&fitted.matrices().model(physics, airspeed_kt, pade)?, correction, pade)?)
+            }
+        }
     }
 }

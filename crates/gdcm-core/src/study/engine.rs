@@ -11,9 +11,9 @@ use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
 
 use super::{
     Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionStages, ConventionDoubt, CouplingFitKey, CouplingOutcome,
-    CouplingSource, Execution, FittedCouplings, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed,
-    convention_doubts, model_count,
+    ConditionModels, ConditionStages, ConventionDoubt, CouplingFitKey, CouplingOutcome, CouplingSource, Execution,
+    FittedCouplings, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed, convention_doubts,
+    model_count,
 };
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
@@ -119,8 +119,17 @@ impl Engine {
         }
         let (study, omega) = (study.clone(), grid.omega().into());
         let assessment = BTreeMap::new();
-        let mut analysis =
-            Analysis { study, omega, conditions, couplings, doubts, schedule, assessment, uncertainty: None };
+        let mut analysis = Analysis {
+            study,
+            omega,
+            conditions,
+            couplings,
+            coupling_assessment: None,
+            doubts,
+            schedule,
+            assessment,
+            uncertainty: None,
+        };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
         let ids: Vec<ConditionId> =
             analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
@@ -171,9 +180,8 @@ impl Engine {
         let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
-            let ConditionResponses { physics, identified, .. } =
-                models.responses(Purpose::Drawing, key, &grid, &execution)?;
-            Ok(Arc::new(ConditionCurves { condition: Arc::clone(models.condition()), grid, physics, identified }))
+            let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
+            Ok(Arc::new(ConditionCurves::new(Arc::clone(models.condition()), grid, responses)))
         })?;
         Ok(Some(curves))
     }

@@ -7,7 +7,10 @@ use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, Model, M
 use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, ModesError, PreparedModel, modes_of};
 
-use super::{Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, Progress, Study, Uncertainty, in_turn};
+use super::{
+    Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, FittedCouplings, Progress, Study, Uncertainty,
+    in_turn,
+};
 
 /// One piece of long work with progress and cancellation, done beside the live answer.
 ///
@@ -141,6 +144,8 @@ pub struct AcrossJob {
     pub dataset: Arc<Dataset>,
     /// The models; those that the dataset does not have are left out.
     pub models: Vec<ModelId>,
+    /// The couplings of those models; none of models as they are.
+    pub couplings: Option<Arc<FittedCouplings>>,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
 }
@@ -158,13 +163,16 @@ impl AcrossJob {
     /// The model of a role of every condition, as far as there is one.
     pub fn of(dataset: &Arc<Dataset>, analysis: Option<&Analysis>, role: AcrossRole, grid: (Band, usize)) -> Self {
         let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
-        Self { dataset: Arc::clone(dataset), models, grid }
+        let couplings =
+            analysis.filter(|_| role == AcrossRole::Corrected).and_then(Analysis::fitted_couplings).cloned();
+        Self { dataset: Arc::clone(dataset), models, couplings, grid }
     }
 }
 
 impl PartialEq for AcrossJob {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.dataset, &other.dataset) && (&self.models, self.grid) == (&other.models, other.grid)
+        let key = |of: &Self| (of.models.clone(), of.couplings.clone(), of.grid);
+        Arc::ptr_eq(&self.dataset, &other.dataset) && key(self) == key(other)
     }
 }
 
@@ -176,8 +184,13 @@ impl Job for AcrossJob {
         let (band, points) = self.grid;
         let grid = FrequencyGrid::logarithmic(band, points);
         let responses = in_turn(&self.models, progress, |id| {
-            let model = self.dataset.condition(id.condition)?.model(id.bundle, &id.name)?;
-            Some((id.clone(), Arc::new(PreparedModel::of(&model.dynamics).response(&grid))))
+            let condition = self.dataset.condition(id.condition)?;
+            let response = PreparedModel::of(&condition.model(id.bundle, &id.name)?.dynamics).response(&grid);
+            let coupled = self
+                .couplings
+                .as_ref()
+                .map(|fitted| fitted.matrices().response(&response, condition.flight_state().airspeed_kt));
+            Some((id.clone(), Arc::new(coupled.unwrap_or(response))))
         })?;
         let responses = responses.into_iter().flatten().collect();
         Ok(Arc::new(AcrossCurves { grid, responses }))

@@ -12,6 +12,7 @@ mod convention_doubt;
 mod coupled_condition;
 mod couplings_assessment;
 mod couplings_cost;
+mod couplings_tables;
 mod couplings_words;
 mod decision_difference;
 mod derivation;

@@ -13,6 +13,7 @@ use gdcm_core::fidelity::Cost;
 use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
 use gdcm_core::study::{Analysis, Assessed, Caution, ConditionAnalysis, lead_cautions};
 
+use super::couplings::{condition_couplings, couplings};
 use super::uncertainty::{bars, net_gain_bar, uncertainty};
 use super::{NAME, VERSION};
 
@@ -54,13 +55,14 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "outputs": channels(dataset.outputs()),
         "settings": analysis.study.settings.named(dataset),
         "signs": analysis.study.turned_channels(),
+        "couplings": couplings(analysis),
         "conditions": conditions,
         "failed": failed,
         "schedule": analysis.schedule.as_ref().ok().map(|schedule| names.schedule(schedule)),
         "assessment": {"conditions": assessed, "left_out": left_out},
         "uncertainty": uncertainty(&names),
     });
-    without_empty(corrections, &["signs", "uncertainty"])
+    without_empty(corrections, &["signs", "couplings", "uncertainty"])
 }
 
 /// Names and units of channels, in the order of every list and table.
@@ -211,10 +213,11 @@ impl<'a> ChannelNames<'a> {
                 self.of_pair(pair, entries)
             }).collect::<Value>(),
             "bars": bars(self, condition.id()),
+            "couplings": condition_couplings(self.analysis, result),
             "J": {"uncorrected": costs(&result.comparison.representative.cost), "corrected": costs(&corrected)},
             "cautions": cautions.collect::<Value>(),
         });
-        without_empty(found, &["reasons", "sources", "held_out", "lead", "bars"])
+        without_empty(found, &["reasons", "sources", "held_out", "lead", "bars", "couplings"])
     }
 
     fn gain_solution(&self, result: &ConditionAnalysis) -> Value {

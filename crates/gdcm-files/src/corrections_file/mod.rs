@@ -1,6 +1,7 @@
 //! Result files: `corrections.json`, `corrections.csv`, `assessment.csv`, and their checksums.
 
 mod corrections;
+mod couplings;
 mod tables;
 mod uncertainty;
 

@@ -102,7 +102,7 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
 
 /// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
 /// airspeed; where leads were asked for, the signed delays and the filters of the negative ones. A value that does not exist is an
-/// empty cell.
+/// empty cell. With couplings a column for each input and each output follows: what an input takes of it (M16).
 pub(crate) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -113,8 +113,16 @@ pub(crate) fn channel_table(
         let row = move |&channel: &Channel| ChannelRow { found: found.clone(), channel };
         channels.iter().map(row)
     });
-    let heading = CHANNEL_COLUMNS.map(|(name, _)| name.to_owned());
-    write_records(file, std::iter::once(heading).chain(rows.map(|row| CHANNEL_COLUMNS.map(|(_, cell)| cell(&row)))))
+    let couplings = analysis.fitted_couplings().is_some();
+    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+    let mixed = inputs.iter().map(|name| format!("mixing_{name}"));
+    let fed_back = outputs.iter().map(|name| format!("feedback_{name}"));
+    let heading = CHANNEL_COLUMNS.iter().map(|(name, _)| (*name).to_owned());
+    let heading: Vec<String> = heading.chain(mixed.chain(fed_back).filter(|_| couplings)).collect();
+    let cells = |row: ChannelRow<'_>| -> Vec<String> {
+        CHANNEL_COLUMNS.iter().map(|(_, cell)| cell(&row)).chain(row.coupling_cells()).collect()
+    };
+    write_records(file, std::iter::once(heading).chain(rows.map(cells)))
 }
 
 /// `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
@@ -178,6 +186,20 @@ impl ChannelRow<'_> {
 
     fn tau_s(&self, of: Option<&ChannelCorrection>) -> Option<f64> {
         of?.leads.as_ref().map(|leads| leads.taus_s[self.channel])
+    }
+
+    /// Of an input what it takes of each input and of each output; nothing without couplings.
+    fn coupling_cells(&self) -> Vec<String> {
+        let Some(fitted) = self.found.analysis.fitted_couplings() else { return Vec::new() };
+        let (matrices, airspeed_kt) = (fitted.matrices(), self.found.condition.flight_state().airspeed_kt);
+        let (mixing, feedback) = (matrices.normalised_mixing(airspeed_kt), matrices.feedback());
+        match self.channel {
+            Channel::Input(to) => {
+                let taken = (0..mixing.ncols()).map(|from| mixing[(to, from)]);
+                taken.chain((0..feedback.ncols()).map(|of| feedback[(to, of)])).map(|value| cell(Some(value))).collect()
+            }
+            Channel::Output(_) => vec![String::new(); mixing.ncols() + feedback.ncols()],
+        }
     }
 
     fn price(&self) -> Option<LeadPrice> {

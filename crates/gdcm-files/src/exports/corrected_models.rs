@@ -10,7 +10,7 @@ use gdcm_core::correction::{ChannelCorrection, CorrectedModel, LeadPrice};
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
 };
-use gdcm_core::study::{Analysis, AssessedCorrection, ConditionAnalysis};
+use gdcm_core::study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
 use gdcm_core::units::{number, telling};
 
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records, scalar, text};
@@ -96,6 +96,8 @@ struct ExportedModel {
     band_top_rad_s: f64,
     /// What its lead filters cost, with that in words; none where it has none.
     price: Option<(LeadPrice, String)>,
+    /// The couplings in it, in words; empty without.
+    couplings: &'static str,
 }
 
 /// The corrected models that a request asks for, in the dataset's order.
@@ -120,7 +122,7 @@ fn exported_model(
     let Dynamics::StateSpace(dynamics) = &model.dynamics else {
         return Err(ExportFault::NoMatrices { condition: id, model: model.name.clone() });
     };
-    let corrected = CorrectedModel::of(dynamics, &correction, request.pade).map_err(|error| {
+    let corrected = analysis.corrected_model(condition, dynamics, &correction, request.pade).map_err(|error| {
         let (inputs, outputs) = analysis.study.dataset.names_of_channels();
         let words = error.words(&inputs, &outputs);
         ExportFault::Model { condition: id, model: model.name.clone(), words }
@@ -149,8 +151,22 @@ fn exported_model(
             let words = price.words(&inputs, &outputs);
             (price, words)
         }),
+        couplings: couplings_words(analysis, dynamics),
         model: corrected.model,
     })
+}
+
+/// What is in a model besides the correction of its channels.
+fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
+    let has_delays = !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
+    match (analysis.fitted_couplings(), analysis.study.settings.couplings) {
+        (None, _) => "",
+        (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
+            "; with mixing and feedback of the model, its own delays inside the loop as Pade approximants"
+        }
+        (Some(_), CouplingCorrection::MixingAndFeedback) => "; with mixing and feedback, exact",
+        (Some(_), _) => "; with mixing, exact",
+    }
 }
 
 fn model_of<'c>(analysis: &Analysis, role: &ExportedRole, condition: &'c Condition) -> Result<&'c Model, ExportFault> {
@@ -217,7 +233,8 @@ impl ExportedModel {
     fn words(&self) -> String {
         let Self { condition, name, correction, .. } = self;
         let price = self.price.as_ref().map(|(_, words)| format!("; {words}")).unwrap_or_default();
-        format!("condition {condition}, model {name}, {correction} correction: {}{price}", self.delay_words())
+        let (delays, couplings) = (self.delay_words(), self.couplings);
+        format!("condition {condition}, model {name}, {correction} correction: {delays}{couplings}{price}")
     }
 
     /// The gain at ten times the band that the leads of the response that pays most add \[dB\]; 0 without leads.
@@ -362,7 +379,8 @@ fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_core::study::{Engine, Study, Unobserved};
+    use gdcm_core::response::{FrequencyGrid, FrequencyResponse};
+    use gdcm_core::study::{Engine, PhaseCorrection, Study, Unobserved, setting};
 
     use super::*;
     use crate::embedded_example;
@@ -392,5 +410,31 @@ mod tests {
         let airspeeds = arrays.iter().find(|array| array.name == "airspeed_kt").unwrap();
         let values = models.iter().map(|model| model.airspeed_kt).collect();
         assert_eq!(airspeeds.value, matrix(1, models.len(), values));
+    }
+
+    #[test]
+    fn a_corrected_model_with_couplings_has_the_response_of_the_analysis() {
+        let mut study = Study::new(embedded_example().unwrap().dataset);
+        study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
+        study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).unwrap();
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let own = ExportRequest { correction: AssessedCorrection::Own, ..ExportRequest::default() };
+        let grid = FrequencyGrid::logarithmic(study.settings.band, 12);
+        for model in exported_models(&analysis, &own).unwrap() {
+            assert!(model.words().contains("with mixing and feedback, exact"), "{}", model.words());
+            let result = analysis.condition(model.condition).unwrap();
+            let bundle = result.condition.bundle(BundleKind::Physics);
+            let physics = FrequencyResponse::of(&bundle[result.condition.nominal()].dynamics, &grid);
+            let coupled = result.coupled_response(&physics);
+            let found = FrequencyResponse::of(&Dynamics::StateSpace(model.model.clone()), &grid);
+            for (pair, curve) in coupled.curves().iter() {
+                let gain = result.correction.net_gain(pair);
+                let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;
+                for (found, expected) in found.curve(pair).iter().zip(curve) {
+                    // Both close the loop, one in states, the other at each frequency.
+                    assert!((found - expected * gain).norm() <= 1e-9 * largest, "{pair:?} of {}", model.condition);
+                }
+            }
+        }
     }
 }

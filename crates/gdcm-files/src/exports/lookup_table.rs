@@ -58,6 +58,7 @@ struct Kind {
 
 const GAIN: Kind = Kind { name: "gain", field: "gains", is_time: false };
 const DELAY: Kind = Kind { name: "delay", field: "delays_s", is_time: true };
+const MIXING: Kind = Kind { name: "mixing", field: "mixing", is_time: false };
 const LEAD: Kind = Kind { name: "lead numerator", field: "lead_numerators_s", is_time: true };
 
 impl Kind {
@@ -131,7 +132,20 @@ impl<'e> BreakpointTable<'e> {
                 table.columns.push(table.column(channel, &LEAD, &second, zero_s));
             }
         }
+        table.add_mixing();
         Ok(table)
+    }
+
+    /// What each input takes of each input, where there are couplings: of the first input first.
+    fn add_mixing(&mut self) {
+        let (Some(couplings), count) = (self.of.couplings, self.of.dataset.inputs().len()) else { return };
+        let (inputs, _) = self.of.dataset.names_of_channels();
+        for (to, from) in (0..count).flat_map(|to| (0..count).map(move |from| (to, from))) {
+            let of =
+                self.column(Channel::Input(to), &MIXING, &[None], |kt, _| couplings.normalised_mixing(kt)[(to, from)]);
+            let values = self.rows.iter().map(|(kt, _)| couplings.normalised_mixing(*kt)[(to, from)]).collect();
+            self.columns.push(Column { name: format!("{} from {}", inputs[to], inputs[from]), values, ..of });
+        }
     }
 
     /// The column of values at an airspeed \[kt\] and each of these values of the second variable.
@@ -176,6 +190,9 @@ impl<'e> BreakpointTable<'e> {
         for column in &self.columns {
             let _ = writeln!(text, "# {}: {}", comment(&column.words()), column.error_words());
         }
+        for line in self.feedback_lines() {
+            let _ = writeln!(text, "# {line}");
+        }
         text.push_str("airspeed [kt]");
         if let Some(term) = &self.of.schedule.second {
             let _ = write!(text, ",{} [{}]", term.variable.name(), term.variable.unit());
@@ -192,6 +209,18 @@ impl<'e> BreakpointTable<'e> {
             text.push('\n');
         }
         text
+    }
+
+    /// The feedback, a line for each input that receives; nothing without couplings.
+    fn feedback_lines(&self) -> Vec<String> {
+        let Some(couplings) = self.of.couplings else { return Vec::new() };
+        let (inputs, outputs) = self.of.dataset.names_of_channels();
+        let line = |to: usize| {
+            let of = |from: usize| format!("{} {}", comment(&outputs[from]), number(couplings.feedback()[(to, from)]));
+            let entries: Vec<String> = (0..outputs.len()).map(of).collect();
+            format!("feedback to input {}: {}", comment(&inputs[to]), entries.join(", "))
+        };
+        (0..inputs.len()).map(line).collect()
     }
 
     /// The variable `gdcm_table`: the airspeeds, and for each input and output a column of gains and one of delays \[s\], where there are
@@ -217,6 +246,14 @@ impl<'e> BreakpointTable<'e> {
                 let name = format!("{side}_{}_error_{unit}", kind.name.replace(' ', "_"));
                 fields.add(&name, row(columns.iter().map(|column| column.error.error)));
             }
+        }
+        if let Some(couplings) = self.of.couplings {
+            let columns: Vec<&Column> = self.columns.iter().filter(|column| column.kind == &MIXING).collect();
+            let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
+            fields.add("mixing", matrix(self.rows.len(), columns.len(), values));
+            fields.add("mixing_of", cell_of_texts(columns.iter().map(|column| column.name.clone())));
+            let feedback = couplings.feedback();
+            fields.add("feedback", matrix(feedback.nrows(), feedback.ncols(), feedback.as_slice().to_vec()));
         }
         if let Some(leads) = &schedule.leads {
             fields.add("lead_order", scalar(leads.design.settings().order.number() as f64));
@@ -350,7 +387,7 @@ mod tests {
 
     fn table<'a>(analysis: &'a Analysis, source: &'a ExportSource) -> BreakpointTable<'a> {
         let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
-        BreakpointTable::of(Scheduled { schedule, dataset, source }, Some(&POINTS)).unwrap()
+        BreakpointTable::of(Scheduled { schedule, dataset, source, couplings: None }, Some(&POINTS)).unwrap()
     }
 
     fn source() -> ExportSource {

@@ -173,7 +173,8 @@ impl<'e> Export<'e> {
     /// The schedule of the study.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
         let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source })
+        let couplings = self.analysis.fitted_couplings().map(|fitted| fitted.matrices());
+        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source, couplings })
     }
 }
 

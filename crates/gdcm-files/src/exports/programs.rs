@@ -4,6 +4,7 @@ use std::io;
 use std::path::Path;
 
 use gdcm_core::correction::Channel;
+use gdcm_core::couplings::CouplingMatrices;
 use gdcm_core::schedule::Regression;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
@@ -137,6 +138,7 @@ impl Program {
             },
             second,
             lead,
+            couplings => of.couplings.map(|couplings| self.couplings(couplings)),
             sides => vec![self.side(of, "Input", &inputs), self.side(of, "Output", &outputs)],
         };
         let mut environment = Environment::new();
@@ -144,6 +146,32 @@ impl Program {
             SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
         environment.set_syntax(whole_lines.map_err(io::Error::other)?);
         environment.render_str(self.template, values).map_err(io::Error::other)
+    }
+
+    /// `M~(V)` of the airspeed `V` clamped and scaled as the couplings take it, and `K`, row by row.
+    fn couplings(&self, of: &CouplingMatrices) -> Value {
+        let airspeeds = of.airspeeds();
+        let (inputs, outputs) = of.feedback().shape();
+        let curve = |to, from| self.language.expression(&Curve::plain(of.mixing_curve(to, from).clone()));
+        let mixing = |to: usize| {
+            let entry = |from: usize| {
+                context! { column => from, own => curve(to, from), of => curve(from, from), is_unit => to == from }
+            };
+            (0..inputs).map(entry).collect::<Vec<_>>()
+        };
+        let feedback = |to: usize| (0..outputs).map(|from| number(of.feedback()[(to, from)])).collect::<Vec<_>>();
+        context! {
+            least => number(airspeeds.min_kt),
+            most => number(airspeeds.max_kt),
+            scaled => match airspeeds.half_range_kt {
+                0.0 => number(0.0),
+                half_range_kt => format!("(a - ({})) / {}", number(airspeeds.mean_kt), number(half_range_kt)),
+            },
+            mixing => (0..inputs).map(mixing).collect::<Vec<_>>(),
+            feedback => (0..inputs).map(feedback).collect::<Vec<_>>(),
+            inputs,
+            outputs,
+        }
     }
 
     fn side(&self, of: &Scheduled<'_>, capital: &str, channels: &[Channel]) -> Value {

@@ -2,6 +2,7 @@
 //! stands above them.
 
 use gdcm_core::correction::Channel;
+use gdcm_core::couplings::CouplingMatrices;
 use gdcm_core::dataset::Dataset;
 use gdcm_core::message_text::shortened;
 use gdcm_core::response::LeadFilter;
@@ -17,6 +18,8 @@ pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
     pub(super) dataset: &'e Dataset,
     pub(super) source: &'e ExportSource,
+    /// Mixing and feedback of the model, where there are any.
+    pub(super) couplings: Option<&'e CouplingMatrices>,
 }
 
 /// A gain, or a time \[s\], over airspeed.
@@ -32,7 +35,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    fn plain(figures: Regression) -> Self {
+    pub(super) fn plain(figures: Regression) -> Self {
         Self { figures, slope: None, of_logarithm: false, upper: None }
     }
 
@@ -140,6 +143,16 @@ impl Scheduled<'_> {
                 ),
                 format!("In fixed-step code use Tustin's rule and a step of at most {} s.", number(0.5 * lag_s)),
             ]);
+        }
+        if self.couplings.is_some() {
+            lines.extend(
+                [
+                    "Couplings: in place of u1 = Mi*u(t - tau_i), after leads, the model itself gets u2 = mixing*u1 + feedback*ym;",
+                    "ym is its output before any correction. Where it has a feed-through D, u2 and ym depend on each other at once:",
+                    "solved, u2 = u1m + F*(y0) of u1m = mixing*u1, y0 = C*x + D*u1m, F = feedback*inverse(I - D*feedback).",
+                ]
+                .map(str::to_owned),
+            );
         }
         lines.extend(notes.iter().map(|note| format!("Note: {}", comment(note))));
         lines

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use gdcm_core::dataset::Dataset;
 use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
-use gdcm_core::study::{Analysis, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+use gdcm_core::study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
+use nalgebra::DMatrix;
 use proptest::prelude::*;
 
 use super::programs::{PROGRAMS, comment};
@@ -56,7 +57,8 @@ fn program(language: &str, analysis: &Analysis, name: &str) -> String {
     let source = &ExportSource { name: NASTY[0].to_owned(), sha256: "ba78".to_owned() };
     let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
     let program = PROGRAMS.iter().find(|program| program.about().name == language).unwrap();
-    program.text(&Scheduled { schedule, dataset, source }, name).unwrap()
+    let couplings = analysis.fitted_couplings().map(|fitted| fitted.matrices());
+    program.text(&Scheduled { schedule, dataset, source, couplings }, name).unwrap()
 }
 
 /// Names that would end a comment or a text if they were written as they are.
@@ -201,6 +203,96 @@ fn a_function_of_matlab_gives_the_programs_own_numbers() {
             listed()
         );
         assert_run(&words, "octave-cli", &["--eval", &program], folder.path(), &expected(&analysis));
+    }
+}
+
+/// The example with mixing and feedback, gains alone.
+fn coupled() -> Analysis {
+    let mut study = Study::new(embedded_example().unwrap().dataset);
+    study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
+    study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).unwrap();
+    Engine::default().analyze(&study, &Unobserved).unwrap()
+}
+
+/// A feed-through of 6 x 4, of numbers that every language writes alike.
+fn feed_through() -> DMatrix<f64> {
+    DMatrix::from_fn(6, 4, |output, input| 0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0)
+}
+
+fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
+    let row = |row: usize| {
+        let values: Vec<String> = of.row(row).iter().map(|value| format!("{value:?}")).collect();
+        format!("{open}{}{close}", values.join(", "))
+    };
+    format!("{open}{}{close}", (0..of.nrows()).map(row).collect::<Vec<_>>().join(", "))
+}
+
+/// At each airspeed the mixing, the feedback, and the feedback closed through the feed-through, row by row.
+fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
+    let matrices = analysis.fitted_couplings().unwrap().matrices();
+    let feedback = matrices.feedback();
+    let closed = feedback * (DMatrix::identity(6, 6) - feed_through() * feedback).try_inverse().unwrap();
+    let values = |airspeed: f64| {
+        let of = [&matrices.normalised_mixing(airspeed), feedback, &closed];
+        of.map(|of| of.transpose().as_slice().to_vec()).concat()
+    };
+    airspeeds().into_iter().flat_map(values).collect()
+}
+
+#[test]
+fn couplings_of_every_program_are_the_programs_own_and_are_closed_through_a_feed_through() {
+    let analysis = coupled();
+    let expected = expected_couplings(&analysis);
+    let folder = tempfile::tempdir().unwrap();
+    if is_there("python3") {
+        std::fs::write(folder.path().join("c.py"), program("py", &analysis, "")).unwrap();
+        let program = format!(
+            "import c\nfor a in [{}]:\n    m, k = c.gdcm_couplings(a)\n    f = c.gdcm_closed_feedback(k, {})\n    \
+             print(*[repr(x) for rows in (m, k, f) for row in rows for x in row])",
+            listed(),
+            list_of_rows(&feed_through(), ['[', ']'])
+        );
+        assert_run("couplings", "python3", &["-c", &program], folder.path(), &expected);
+    }
+    if is_there("cc") {
+        let main = format!(
+            "{}\n#include <stdio.h>\nint main(void) {{ static const double s[] = {{{}}}; double d[6][4] = {};\n\
+             double m[4][4], k[4][6]; unsigned n; int i, turn;\n\
+             for (n = 0; n < sizeof s / sizeof *s; n++) {{ if (gdcm_couplings(s[n], m, k) < 0) return 1;\n\
+             for (i = 0; i < 16; i++) printf(\"%.17g \", (&m[0][0])[i]);\n\
+             for (turn = 0; turn < 2; turn++) {{ if (turn == 1 && gdcm_close_feedback(k, d)) return 2;\n\
+             for (i = 0; i < 24; i++) printf(\"%.17g \", (&k[0][0])[i]); }} }}\nreturn 0; }}\n",
+            program("h", &analysis, ""),
+            listed(),
+            list_of_rows(&feed_through(), ['{', '}'])
+        );
+        std::fs::write(folder.path().join("main.c"), main).unwrap();
+        let flags = ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
+        let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let program = folder.path().join("main").display().to_string();
+        assert_run("couplings", &program, &[], folder.path(), &expected);
+    }
+    if is_there("octave-cli") {
+        std::fs::write(folder.path().join("my_study.m"), program("m", &analysis, "my_study")).unwrap();
+        let rows: Vec<String> =
+            feed_through().row_iter().map(|row| format!("{:?}", row.iter().collect::<Vec<_>>())).collect();
+        let program = format!(
+            "D = [{}]; for s = [{}], [~, ~, ~, ~, m, k] = my_study(s); [~, ~, ~, ~, ~, f] = my_study(s, D); \
+             printf('%.17g ', m', k', f'); end",
+            rows.join("; "),
+            listed()
+        );
+        assert_run("couplings", "octave-cli", &["--eval", &program], folder.path(), &expected);
+    }
+}
+
+#[test]
+fn a_study_without_couplings_has_none_in_its_programs() {
+    let analysis = Engine::default().analyze(&Study::new(embedded_example().unwrap().dataset), &Unobserved).unwrap();
+    for language in ["m", "py", "h"] {
+        let text = program(language, &analysis, "k").to_lowercase();
+        assert!(!text.contains("mixing") && !text.contains("feedback"), "{language}: {text}");
     }
 }
 

@@ -59,8 +59,10 @@ pub(super) struct SourceModel {
 
 /// The representative physics model after a correction: a curve without numbers yet, and what it is made of.
 #[derive(Clone, Debug)]
-pub(super) struct CorrectedModel {
+pub(super) struct CorrectedModel<'a> {
     pub(super) curve: BodeCurve,
+    /// The result whose couplings it has.
+    pub(super) result: &'a ConditionAnalysis,
     /// Index of the physics model.
     pub(super) model: usize,
     pub(super) correction: GainDelay,
@@ -150,18 +152,20 @@ impl<'a> ConditionSource<'a> {
 
     /// The representative physics model with the condition's own correction, with that of the schedule, where there are leads
     /// without them, and where a variant is laid over with its.
-    pub(super) fn corrected_models(&self, pair: Pair, options: &BodeOptions) -> Vec<CorrectedModel> {
+    pub(super) fn corrected_models(&self, pair: Pair, options: &BodeOptions) -> Vec<CorrectedModel<'a>> {
         let Some(analysis) = self.analysis else { return Vec::new() };
-        let of =
-            |result: &ConditionAnalysis, (id, role): (CurveId, Role), words: &str, correction: &ChannelCorrection| {
-                let name = result.representative_name(BundleKind::Physics);
-                let model = self.curves.condition.position(BundleKind::Physics, name)?;
-                let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
-                let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
-                let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
-                let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
-                Some(CorrectedModel { curve, model, correction: correction.on(pair)? })
-            };
+        let of = |result: &'a ConditionAnalysis,
+                  (id, role): (CurveId, Role),
+                  words: &str,
+                  correction: &ChannelCorrection| {
+            let name = result.representative_name(BundleKind::Physics);
+            let model = self.curves.condition.position(BundleKind::Physics, name)?;
+            let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
+            let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
+            let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
+            let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
+            Some(CorrectedModel { curve, result, model, correction: correction.on(pair)? })
+        };
         let corrected = |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
         let variant = self.variant.and_then(|(name, result)| {
             let mut model = of(result, (CurveId::Variant, Role::Variant), "corrected", &result.correction)?;

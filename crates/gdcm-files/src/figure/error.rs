@@ -51,8 +51,10 @@ impl ConditionSource<'_> {
             let of_reference = identified.filter(|model| model.index == reference);
             drawn.extend(of_reference.map(|model| self.curve_of(model).with(&cache.omega, &cache.zero, &cache.zero)));
         }
-        for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
-            if let Some((shape, _)) = &cache.errors[model] {
+        for CorrectedModel { curve, result, model, correction } in self.corrected_models(pair, options) {
+            let coupled = result.coupled.as_ref().map(|_| cache.shape(&self.curves.with_couplings(result, model)));
+            let shape = coupled.unwrap_or_else(|| cache.errors[model].as_ref().map(|(shape, _)| shape.clone()));
+            if let Some(shape) = shape {
                 let error = shape.drawn(correction, &cache.omega, unit);
                 drawn.push(curve.with(&cache.omega, &error.magnitude_db, &error.phase));
             }
@@ -147,6 +149,12 @@ impl Made {
         PolarCurve::of(response.curve(self.pair).get(from..to)?)
     }
 
+    /// The error of a response of the condition over `omega`, the band.
+    fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
+        let reference = self.polar(&self.curves.identified[self.reference])?;
+        ErrorShape::of(&self.polar(response)?, &reference, omega, self.coherence_weights(omega).as_ref())
+    }
+
     /// The frequencies among `omega` that count, where the reference's coherence says that.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let flight = &self.curves.condition.bundle(BundleKind::Identified)[self.reference].dynamics;
@@ -177,16 +185,18 @@ impl ErrorCache {
         }
         self.omega = made.omega();
         self.zero = vec![0.0; self.omega.len()].into();
-        let reference = made.polar(&made.curves.identified[made.reference]);
-        let coherence_weights = made.coherence_weights(&self.omega);
         let error = |response: &Arc<FrequencyResponse>| {
-            let shape =
-                ErrorShape::of(&made.polar(response)?, reference.as_ref()?, &self.omega, coherence_weights.as_ref())?;
+            let shape = made.shape(response, &self.omega)?;
             let drawn = shape.drawn(GainDelay::NONE, &self.omega, made.unit);
             Some((shape, drawn))
         };
         self.errors = made.curves.physics.iter().map(error).collect();
         self.made = Some(made);
+    }
+
+    /// The error of a response that is none of a model as it is.
+    fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
+        self.made.as_ref()?.shape(response, &self.omega)
     }
 }
 

@@ -34,8 +34,13 @@ impl ConditionSource<'_> {
                 draw(cache, self.curve_of(model), shape);
             }
         }
-        for CorrectedModel { curve, model, correction } in self.corrected_models(pair, options) {
-            let shape = cache.physics[model].corrected(&cache.omega, correction);
+        for CorrectedModel { curve, result, model, correction } in self.corrected_models(pair, options) {
+            let shape = match &result.coupled {
+                None => cache.physics[model].corrected(&cache.omega, correction),
+                Some(_) => {
+                    cache.laid(&self.curves.with_couplings(result, model), pair).corrected(&cache.omega, correction)
+                }
+            };
             draw(cache, curve, shape);
         }
         drawn
@@ -58,6 +63,8 @@ fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
 pub struct ResponseCache {
     made_of: Option<(Arc<ConditionCurves>, Pair, usize)>,
     omega: Arc<[f64]>,
+    /// What phases are laid on, over so many of the first frequencies.
+    reference: Option<(ResponseShape, usize)>,
     physics: Vec<ResponseShape>,
     identified: Vec<ResponseShape>,
 }
@@ -86,14 +93,22 @@ impl ResponseCache {
         // The last frequency of a grid may be a rounding error beyond its end.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
-        let laid = |response: &Arc<FrequencyResponse>| {
-            ResponseShape::of(response.curve(pair)).phase_aligned(&reference_shape, points)
-        };
-        let shapes = |kind| curves.bundle(kind).iter().map(&laid);
-        self.physics = shapes(BundleKind::Physics).collect();
-        self.identified = shapes(BundleKind::Identified).map(|shape| shape.first(points)).collect();
+        self.reference = Some((reference_shape, points));
+        let shapes = |kind| curves.bundle(kind).iter().map(|response| self.laid(response, pair)).collect::<Vec<_>>();
+        let (physics, identified) = (shapes(BundleKind::Physics), shapes(BundleKind::Identified));
+        self.physics = physics;
+        self.identified = identified.into_iter().map(|shape| shape.first(points)).collect();
         self.omega = curves.grid.omega().into();
         self.made_of = Some((Arc::clone(curves), pair, reference));
+    }
+
+    /// The shape of a response, its phase laid on that of the reference.
+    fn laid(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
+        let shape = ResponseShape::of(response.curve(pair));
+        match &self.reference {
+            Some((reference, points)) => shape.phase_aligned(reference, *points),
+            None => shape,
+        }
     }
 
     fn of_bundle(&self, kind: BundleKind) -> &[ResponseShape] {

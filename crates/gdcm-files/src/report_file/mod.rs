@@ -2,6 +2,7 @@
 
 mod assessment;
 mod conditions;
+mod couplings;
 mod page;
 mod schedule;
 mod study;
@@ -54,12 +55,14 @@ pub fn report(
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
-    let analysis = &assessment::with_bars(analysis, engine, progress)?;
+    let with_bars = assessment::with_bars(analysis, engine, progress)?;
+    let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
     study::add_summary(&mut page, analysis);
     study::add_settings(&mut page, &analysis.study);
     study::add_files(&mut page, &analysis.study, source);
     study::add_left_out(&mut page, analysis);
+    couplings::add_couplings(&mut page, analysis);
     conditions::add(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);

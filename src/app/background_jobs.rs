@@ -11,7 +11,7 @@ use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJo
 
 use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
-use crate::view::views::overlay_job;
+use crate::view::views::{offered_couplings_job, overlay_job};
 use crate::view::{Background, Need, State, View};
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
@@ -124,6 +124,14 @@ impl BackgroundJobs {
             |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
             |app, job, curves| app.state.results.across = Some((job, curves)),
         );
+        let couplings = JobKind::new(
+            |app| needed(app, |need| if let Need::Couplings(job) = need { Some(job) } else { None }),
+            |app, job, assessed| app.state.results.couplings = assessed.map(|assessed| (job, assessed)),
+        );
+        let requirements = JobKind::new(
+            |app| needed(app, |need| if let Need::Requirements(job) = need { Some(job) } else { None }),
+            |app, job, found| app.state.results.requirements = Some((job, found)),
+        );
         let variants = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
@@ -157,6 +165,8 @@ impl BackgroundJobs {
             started("modes", || (), modes, replies)?,
             started("assessment", || (), assessments, replies)?,
             started("conditions", || (), across, replies)?,
+            started("couplings", engine(), couplings, replies)?,
+            started("requirements", pool, requirements, replies)?,
             started("variants", engine(), variants, replies)?,
             started("simulation", pool, simulations, replies)?,
             started("report", engine(), reports, replies)?,
@@ -184,7 +194,8 @@ impl GdcmApp {
         let state = &self.state;
         let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
         let of_views = shown.flat_map(|view| (view.kind().needs)(state));
-        self.needs = of_views.chain(overlay_job(state).map(Need::Variant)).collect();
+        let offered = offered_couplings_job(state).map(Need::Couplings);
+        self.needs = of_views.chain(overlay_job(state).map(Need::Variant)).chain(offered).collect();
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }

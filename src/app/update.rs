@@ -113,6 +113,9 @@ impl GdcmApp {
                 display.across.request_refit();
             }
             Command::Assess(figures) => display.assessed = figures,
+            Command::ShowRequirements(table) => {
+                (display.requirements_table, display.requirements_sorting) = (table, Default::default());
+            }
             Command::SetFrequencyUnit(unit) => display.unit = unit,
             Command::Curves(command) => show_curves(display, command),
             Command::EndIsolation => {

@@ -1,14 +1,21 @@
 //! `gdcm figure`.
 
+use std::sync::Arc;
+
 use gdcm_core::message_text::{sanitized, sanitized_path};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
-use gdcm_core::study::{Analysis, CURVE_POINTS, Engine, Study, curves_band};
+use gdcm_core::study::{
+    Analysis, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, Execution, Study, Unobserved, curves_band,
+    requirements_of,
+};
 use gdcm_files::figure::{
-    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, all_channels,
+    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
 };
 use gdcm_files::{figure_format, write_figure};
+
+use crate::executor::Pool;
 
 use super::{
     Failure, FigureArguments, PairChoice, TerminalProgress, analysis_of, condition_of, ids, names, pairs_of, say,
@@ -20,10 +27,17 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let (study, _, outputs) = study_of(&arguments.study, arguments.force)?;
     figure_format(&arguments.out)?;
     outputs.check(&[&arguments.out])?;
-    let request = request(&study, arguments)?;
+    let mut request = request(&study, arguments)?;
     let condition = condition(&study, arguments)?;
     let with_bars = arguments.bars || arguments.view.needs_bars();
     let (analysis, mut engine) = analysis_of(study, &arguments.study, with_bars)?;
+    if arguments.view == FigureKind::Requirements {
+        let execution = Execution::new(&Pool, &Unobserved, analysis.conditions.len());
+        request.requirements = Some(Arc::new(requirements_of(&analysis, &execution)?));
+    }
+    if arguments.view == FigureKind::Couplings {
+        request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
+    }
     let figure = match condition {
         None => request.figure(Some(&analysis), None),
         Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
@@ -31,6 +45,15 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let figure = figure.ok_or_else(|| Failure::NoResult { reason: "there is nothing to draw".to_owned() })?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
     say(&format!("{}: {}\n", sanitized_path(&arguments.out), sanitized(&figure.title)))
+}
+
+/// What couplings do to a study: those that it asks for, or else mixing and feedback.
+fn assessed_couplings(study: &Study, engine: &mut Engine) -> Result<Arc<CouplingsAssessment>, Failure> {
+    let asked = study.settings.couplings;
+    let asked = if asked == CouplingCorrection::None { CouplingCorrection::MixingAndFeedback } else { asked };
+    let refused = |reason: String| Failure::NoResult { reason };
+    let found = engine.assess_couplings(study, asked, &TerminalProgress::new("couplings"))?;
+    found.ok_or_else(|| refused("no couplings".to_owned()))?.map_err(|why| refused(why.to_string()))
 }
 
 /// The figure of one condition, of the curves that the window draws.
@@ -66,7 +89,8 @@ fn request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, 
     let measure = if arguments.delays { Measure::Delay } else { Measure::Gain };
     let across = if arguments.over_conditions { Across::Conditions } else { Across::Airspeed };
     let unit = if arguments.hertz { FrequencyUnit::Hertz } else { FrequencyUnit::RadPerSecond };
-    let hidden = arguments.hide.iter().copied().collect();
+    // Couplings alone are drawn on wish, which is the window's.
+    let hidden = arguments.hide.iter().copied().chain([Role::Coupled]).collect();
     let zeros_of = match &arguments.zeros {
         Some(list) => pairs_of(dataset, list, "--zeros")?.first().copied(),
         None => None,

@@ -426,6 +426,10 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
             &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)),
         ));
     }
+    if analysis.fitted_couplings().is_some() {
+        let words = "the couplings here are those of all conditions; J with couplings found without each stands under Couplings";
+        text.push_str(&labelled(2, "", LABEL - 2, words));
+    }
     text
 }
 

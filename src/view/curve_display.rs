@@ -45,7 +45,8 @@ impl Default for CurveDisplay {
             magnitude: MagnitudeUnit::default(),
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),
-            hidden_roles: BTreeSet::new(),
+            // Couplings alone are drawn on wish.
+            hidden_roles: BTreeSet::from([Role::Coupled]),
             hidden_models: BTreeSet::new(),
             turns: BTreeMap::new(),
             cursor: None,
@@ -248,7 +249,8 @@ fn look_entries(looks: PlotStyle) -> Vec<Entry> {
 fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
     let is_isolated = display.isolated.is_some() || !display.curves.selected.is_empty();
-    let is_hidden = !(display.curves.hidden_models.is_empty() && display.curves.hidden_roles.is_empty());
+    let is_hidden = !(display.curves.hidden_models.is_empty()
+        && display.curves.hidden_roles.iter().all(|role| *role == Role::Coupled));
     let isolation = Entry::new("End isolation and selection", "Show every model, select none", Command::EndIsolation);
     vec![
         // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has

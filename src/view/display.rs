@@ -15,7 +15,7 @@ use super::plot::{
     PhaseUnit, Role,
 };
 use super::start_page::OpensWith;
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, View};
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsTable, View};
 use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
@@ -81,6 +81,10 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
+    /// Which table of requirements is shown.
+    pub requirements_table: RequirementsTable,
+    /// Its order.
+    pub requirements_sorting: Sorting,
     /// Whether the plots of gains show no error bars and bands.
     pub hide_bars: bool,
     /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.

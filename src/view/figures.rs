@@ -6,7 +6,7 @@ use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRe
 
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
-use super::views::{bode_options, condition_source, net_gain_pairs};
+use super::views::{bode_options, condition_source, net_gain_pairs, shown_couplings, shown_requirements};
 use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
@@ -39,7 +39,7 @@ pub fn views_with_figure() -> impl Iterator<Item = View> {
 }
 
 /// What a view shows: the same that the command `gdcm figure` is asked for.
-fn request(state: &State, view: View) -> Option<FigureRequest> {
+pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let kind = view.kind().figure?;
     let (display, dataset) = (&state.display, state.dataset());
     let pairs = match view {
@@ -59,7 +59,18 @@ fn request(state: &State, view: View) -> Option<FigureRequest> {
     let bode = BodeOptions { omega: ranges.omega, values: ranges.values, ..bode_options(state) };
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
-    Some(FigureRequest { measure, across, assessed, across_role: display.across_role, bode, ..usual })
+    let requirements = shown_requirements(state, kind);
+    let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
+    Some(FigureRequest {
+        measure,
+        across,
+        assessed,
+        across_role: display.across_role,
+        bode,
+        couplings,
+        requirements,
+        ..usual
+    })
 }
 
 /// The parts of the axes that the engineer chose to see.

@@ -7,8 +7,10 @@ use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
     ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, details, lead_words, setting,
 };
+use gdcm_core::units::telling;
 
 use super::palette::medium;
+use super::views::offered_couplings;
 use super::{
     BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, entries_ui, named, remarks_shown, turn_entry, value_label_ui,
 };
@@ -52,6 +54,7 @@ pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
         return;
     };
     remarks_ui(ui, state, &remarks_shown(state, shown), palette, commands);
+    couplings_offer_ui(ui, state, palette, commands);
     if !shown.delays.matched || shown.compensated.is_some() {
         causes_ui(ui, palette, commands);
     }
@@ -148,6 +151,23 @@ fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
     if button.on_hover_text("In every condition; undo takes it back").clicked() {
         commands.push(setting::PHASE.to(phase).into());
     }
+}
+
+/// What couplings would bring off the axis, where that is worth it, and the click that uses them.
+fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some((couplings, [without, with])) = offered_couplings(state) else { return };
+    let text = format!(
+        "Off the axis, J of conditions left out is {} now and would be {} with {}.",
+        telling(without, 1),
+        telling(with, 1),
+        couplings.name()
+    );
+    remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text));
+    let words = format!("Use {}", couplings.name());
+    if ui.small_button(words).on_hover_text("In every condition; undo takes it back").clicked() {
+        commands.push(setting::COUPLINGS.to(couplings).into());
+    }
+    entries_ui(ui, [("Look at the couplings", Command::ShowView(View::Couplings))], commands);
 }
 
 /// The click that turns the models of a channel, or puts them back.

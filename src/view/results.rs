@@ -6,9 +6,9 @@ use gdcm_core::correction::Problem;
 use gdcm_core::dataset::{ConditionId, Dataset};
 use gdcm_core::identification::Validation;
 use gdcm_core::study::{
-    AcrossCurves, AcrossJob, Analysis, AssessmentJob, AssessmentTable, ConditionAnalysis, ConditionCurves,
-    ConditionFailure, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles, TogglesJob, Uncertainty,
-    UncertaintyJob, VariantJob,
+    AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable, ConditionAnalysis,
+    ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, ModesJob, Requirements,
+    RequirementsJob, SimulationJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
 };
 
 /// The result of the condition shown, ahead of the others'.
@@ -80,6 +80,10 @@ pub struct Results {
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
     /// How sure the values of an analysis are, and of which; see [`super::state::State::uncertainty`].
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
+    /// What couplings do, or would do, and to what; see [`super::state::State::couplings`].
+    pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
+    /// What a qualification asks, and of what; see [`super::state::State::requirements`].
+    pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Models against a record in time, or in words why not.

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
-    AcrossCurves, Analysis, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes,
-    Difference, History, Study, Table, Toggles, Uncertainty,
+    AcrossCurves, Analysis, AssessedCouplings, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure,
+    ConditionModes, CouplingsJob, Difference, History, Requirements, Study, Table, Toggles, Uncertainty,
 };
 use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_files::ExportFormat;
@@ -229,6 +229,19 @@ impl State {
         let (job, table) = self.results.assessment.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
         (of_this && job.choice == assessment_choice(self)).then_some(table)
+    }
+
+    /// What a qualification asks; of an older analysis of the same dataset until it is there.
+    pub fn requirements(&self) -> Option<&Arc<Requirements>> {
+        let (job, found) = self.results.requirements.as_ref()?;
+        Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset).then_some(found)
+    }
+
+    /// What couplings do to the study as it is; those of older settings until new ones are there.
+    pub fn couplings(&self, job: &CouplingsJob) -> Option<&AssessedCouplings> {
+        let (known, assessed) = self.results.couplings.as_ref()?;
+        let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
+        (of_this && known.couplings == job.couplings).then_some(assessed)
     }
 
     /// The responses of one model of each condition; those of older settings until new ones are there.

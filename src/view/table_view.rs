@@ -85,36 +85,47 @@ pub fn table_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) -> Option<TableClick> {
+    let area = ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false);
+    area.show(ui, |ui| table_grid_ui(ui, table, sorting, look, palette, commands)).inner
+}
+
+/// The same, as large as it is.
+pub fn table_grid_ui(
+    ui: &mut Ui,
+    table: &Table,
+    sorting: &mut Sorting,
+    look: &TableLook<'_>,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) -> Option<TableClick> {
     let mut clicked = None;
-    ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false).show(ui, |ui| {
-        Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
-            for (column, heading) in table.columns.iter().enumerate() {
-                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
-                let button = ui.add(Button::new(text).frame(false));
-                let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
-                button.context_menu(|ui| copy_ui(ui, table, commands));
-                if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
-                    *sorting = sorting.clicked(column);
+    Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
+        for (column, heading) in table.columns.iter().enumerate() {
+            let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+            let button = ui.add(Button::new(text).frame(false));
+            let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
+            button.context_menu(|ui| copy_ui(ui, table, commands));
+            if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
+                *sorting = sorting.clicked(column);
+            }
+        }
+        ui.end_row();
+        for row in sorting.order(table) {
+            let selected = (look.selected)(row);
+            for (column, cell) in table.rows[row].iter().enumerate() {
+                let color = (look.color)(row, column).unwrap_or(palette.text);
+                let text = RichText::new(cell).size(SMALL_SIZE).color(color);
+                let text = if selected { text.background_color(palette.selected) } else { text };
+                let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
+                let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
+                let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
+                response.context_menu(|ui| copy_ui(ui, table, commands));
+                if response.clicked() {
+                    clicked = Some(TableClick { row, column });
                 }
             }
             ui.end_row();
-            for row in sorting.order(table) {
-                let selected = (look.selected)(row);
-                for (column, cell) in table.rows[row].iter().enumerate() {
-                    let color = (look.color)(row, column).unwrap_or(palette.text);
-                    let text = RichText::new(cell).size(SMALL_SIZE).color(color);
-                    let text = if selected { text.background_color(palette.selected) } else { text };
-                    let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
-                    let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
-                    let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
-                    response.context_menu(|ui| copy_ui(ui, table, commands));
-                    if response.clicked() {
-                        clicked = Some(TableClick { row, column });
-                    }
-                }
-                ui.end_row();
-            }
-        });
+        }
     });
     clicked
 }

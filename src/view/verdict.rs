@@ -6,7 +6,8 @@ use gdcm_core::response::median;
 use gdcm_core::study::{ConditionAnalysis, Edit, PhaseCorrection, SignRole, Value, setting};
 use gdcm_core::units::{number, s_to_ms, signed, telling};
 
-use super::{Command, FormKind, Sheet, State, turn_entry};
+use super::views::offered_couplings;
+use super::{Command, FormKind, Sheet, State, View, turn_entry};
 
 /// Whether gain and phase of the held responses are met, here and in every condition, and what to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -221,6 +222,11 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
             alone(free.into_iter().chain([Step::reasons("Why?")]).collect())
         }
         PhaseCorrection::Lead => {
+            if let Some((couplings, [without, with])) = offered_couplings(state) {
+                let use_them = Step::new("Use couplings", setting::COUPLINGS.to(couplings));
+                let words = format!("J off the axis {} → {}", telling(without, 0), telling(with, 0));
+                return (vec![use_them, Step::new("Look first", Command::ShowView(View::Couplings))], words);
+            }
             alone(vec![Step::new("Export corrections…", export()), Step::reasons("Find the cause")])
         }
         PhaseCorrection::Delay => alone(vec![Step::new("Export corrections…", export())]),

@@ -80,7 +80,11 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Boxed(curves) => {
             let models = curves.into_iter().filter_map(|curve| match curve {
                 CurveId::Model(id) => Some(id),
-                CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant => None,
+                CurveId::Corrected
+                | CurveId::Scheduled
+                | CurveId::WithoutLeads
+                | CurveId::Coupled
+                | CurveId::Variant => None,
             });
             Some(CurveCommand::Select(models.collect()).into())
         }
@@ -109,9 +113,15 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
         (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
-        (_, CurveId::Model(_) | CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant) => {
-            None
-        }
+        (
+            _,
+            CurveId::Model(_)
+            | CurveId::Corrected
+            | CurveId::Scheduled
+            | CurveId::WithoutLeads
+            | CurveId::Coupled
+            | CurveId::Variant,
+        ) => None,
     }
 }
 
@@ -226,7 +236,7 @@ fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
                 curve.detail = format!("{}{separator}{action}", curve.detail);
             }
             CurveId::Scheduled if state.others_are_older() => curve.label.push_str(" of older settings"),
-            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Variant => {}
+            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Coupled | CurveId::Variant => {}
         }
     }
     curves

@@ -4,7 +4,9 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use gdcm_core::study::{AcrossJob, AssessmentJob, ModesJob, PhaseCorrection, SimulationJob, VariantJob};
+use gdcm_core::study::{
+    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RequirementsJob, SimulationJob, VariantJob,
+};
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +17,7 @@ mod assessment;
 mod bode;
 mod channels;
 mod compare;
+mod couplings;
 mod error;
 mod evidence;
 mod frequency;
@@ -22,12 +25,14 @@ mod leads;
 mod net_gain;
 mod overview;
 mod poles;
+mod requirements;
 
 pub use across::*;
 pub use assessment::*;
 pub use bode::*;
 pub use channels::*;
 pub use compare::*;
+pub use couplings::*;
 pub use error::*;
 pub use evidence::*;
 pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
@@ -35,6 +40,7 @@ pub use leads::*;
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;
+pub use requirements::*;
 
 /// One of the plots between the side panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -49,6 +55,8 @@ pub enum View {
     Across,
     /// Poles and modes of every model of the condition.
     Poles,
+    /// What mixes the inputs and feeds outputs back (M16).
+    Couplings,
     /// Channel gains against airspeed (Figures 3 and 4).
     Channels,
     /// What the correction is worth (Figures 8 to 19).
@@ -57,6 +65,8 @@ pub enum View {
     Evidence,
     /// Decisions kept under names, beside the present ones.
     Compare,
+    /// What a qualification asks: bandwidth, modes, summary (M17).
+    Requirements,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
     /// What delay or lead does in each channel, to ten times the band, and its price.
@@ -67,12 +77,13 @@ pub enum View {
 
 impl View {
     /// Every view, in the order of the menu.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
         Self::Across,
         Self::Poles,
+        Self::Couplings,
         Self::Records,
         Self::NetGain,
         Self::Channels,
@@ -80,6 +91,7 @@ impl View {
         Self::Evidence,
         Self::Assessment,
         Self::Compare,
+        Self::Requirements,
     ];
 
     /// Those that the dock may show: that of leads where these are asked for.
@@ -145,6 +157,21 @@ impl View {
                     poles_view_ui,
                 )
             },
+            Self::Couplings => ViewKind {
+                group: ViewGroup::Models,
+                takes_dock: true,
+                title: ViewTitle::Condition,
+                tools: |ui, state, _, commands| couplings_header_ui(ui, state, commands),
+                tools_width: 220.0,
+                is_of_all_conditions: true,
+                needs: |state| vec![Need::Couplings(couplings_job(state))],
+                figure: Some(FigureKind::Couplings),
+                ..ViewKind::new(
+                    "Couplings",
+                    "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
+                    couplings_view_ui,
+                )
+            },
             Self::Records => ViewKind {
                 group: ViewGroup::Models,
                 takes_dock: true,
@@ -203,6 +230,20 @@ impl View {
                     "Compare",
                     "Variants: decisions kept under names, beside the present ones",
                     compare_view_ui,
+                )
+            },
+            Self::Requirements => ViewKind {
+                group: ViewGroup::Judge,
+                takes_dock: true,
+                tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
+                tools_width: 260.0,
+                is_of_all_conditions: true,
+                needs: |state| requirements_job(state).map(Need::Requirements).into_iter().collect(),
+                figure: Some(FigureKind::Requirements),
+                ..ViewKind::new(
+                    "Requirements",
+                    "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
+                    requirements_view_ui,
                 )
             },
             Self::Leads => ViewKind {
@@ -314,4 +355,8 @@ pub enum Need {
     Variant(VariantJob),
     /// A model against a record in time.
     Simulation(SimulationJob),
+    /// What couplings do.
+    Couplings(CouplingsJob),
+    /// What a qualification asks.
+    Requirements(RequirementsJob),
 }

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::{Panel, RichText, Ui, Vec2, vec2};
+use gdcm_core::couplings::PoleShift;
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use gdcm_core::requirements::{ModeName, NamedBy};
 use gdcm_core::response::{Mode, finite_zeros};
-use gdcm_core::study::{ConditionModes, Edit, Table};
+use gdcm_core::study::{ConditionAnalysis, ConditionModes, Edit, FittedCouplings, Table};
 use gdcm_core::units::number;
 use gdcm_files::figure::{Along, DotShape, Figure, Mark, MarkId, Range, Role, Sample, damping_grid, poles_figure};
 use nalgebra::Complex;
@@ -103,7 +104,9 @@ pub fn poles(state: &State) -> Option<Figure> {
     let zeros =
         |id: &ModelId| state.display.modes.zeros.iter().find(|(of, _)| of == id).map(|(_, zeros)| zeros.clone());
     let source = condition_source(state)?;
-    let figure = poles_figure(&source, state.modes()?, &bode_options(state), &|id| zeros(id).unwrap_or_default());
+    let zeros = |id: &ModelId| zeros(id).unwrap_or_default();
+    let shifts = &state.display.modes.shifts;
+    let figure = poles_figure(&source, state.modes()?, &bode_options(state), (&zeros, shifts));
     Some(figure).filter(|figure| figure.plots[0].panels[0].dots().next().is_some())
 }
 
@@ -188,6 +191,10 @@ pub struct CachedModes {
     jumping: Vec<Option<ModelId>>,
     zeros_of: Option<(Arc<ConditionModes>, Pair, Vec<ModelId>)>,
     zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
+    /// Couplings, modes and physics representative that `shifts` are of.
+    shifts_of: Option<(Arc<FittedCouplings>, Arc<ConditionModes>, usize)>,
+    /// Where couplings move the poles of the physics representative.
+    shifts: Vec<PoleShift>,
 }
 
 impl CachedModes {
@@ -208,9 +215,24 @@ impl CachedModes {
             (self.table, self.jumping) = modes_table(state, modes, reference);
             self.tracked = Some((Arc::clone(modes), reference));
         }
+        self.refresh_shifts(state, modes, reference);
         if state.display.show_zeros {
             self.refresh_zeros(state, modes);
         }
+    }
+
+    fn refresh_shifts(&mut self, state: &State, modes: &Arc<ConditionModes>, reference: usize) {
+        let shown = state.shown();
+        let fitted = shown.and_then(|shown| shown.coupled.as_ref()).map(|coupled| Arc::clone(&coupled.fitted));
+        let now = fitted.map(|fitted| (fitted, Arc::clone(modes), reference));
+        let same = |of: &(Arc<FittedCouplings>, Arc<ConditionModes>, usize)| {
+            now.as_ref().is_some_and(|now| Arc::ptr_eq(&of.0, &now.0) && Arc::ptr_eq(&of.1, &now.1) && of.2 == now.2)
+        };
+        if self.shifts_of.as_ref().map_or(now.is_none(), same) {
+            return;
+        }
+        self.shifts = shown.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+        self.shifts_of = now;
     }
 
     /// Zeros of the nominal model and of both representatives: of every model they would hide the poles.

@@ -4,6 +4,7 @@ mod assembling;
 mod commands;
 mod computing;
 mod controls;
+mod couplings;
 mod curves;
 mod decisions;
 mod edges;
@@ -19,6 +20,7 @@ mod plots;
 pub(crate) mod records;
 mod recovery;
 mod reload;
+mod requirements;
 mod views;
 mod walk;
 

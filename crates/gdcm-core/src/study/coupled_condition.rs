@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::correction::{ChannelCorrection, CorrectedModel, Pade};
-use crate::couplings::CoupledModelError;
-use crate::dataset::{Condition, StateSpace};
+use crate::couplings::{CoupledModelError, PoleShift};
+use crate::dataset::{BundleKind, Condition, StateSpace};
 use crate::response::FrequencyResponse;
 
 use super::{Analysis, Comparison, ConditionAnalysis, FittedCouplings};
@@ -31,6 +31,16 @@ impl ConditionAnalysis {
             None => Cow::Borrowed(physics),
             Some(coupled) => Cow::Owned(coupled.fitted.matrices().response(physics, self.airspeed_kt())),
         }
+    }
+
+    /// Where the couplings move the poles of the physics representative; nothing without couplings, and where it has no poles.
+    #[must_use]
+    pub fn pole_shifts(&self) -> Vec<PoleShift> {
+        let representative = &self.condition.bundle(BundleKind::Physics)[self.comparison.physics.model];
+        let shifts = self.coupled.as_ref().zip(representative.state_space()).map(|(coupled, of)| {
+            coupled.fitted.matrices().pole_shifts(of, self.airspeed_kt(), Pade::default()).unwrap_or_default()
+        });
+        shifts.unwrap_or_default()
     }
 
     /// The matrices of one of its physics models with the couplings in them; the model itself without couplings. Delays of its own

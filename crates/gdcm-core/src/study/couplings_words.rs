@@ -83,7 +83,8 @@ impl CouplingsAssessment {
                 signed(change_db, 0)
             )
         });
-        above.into_iter().chain(self.farthest_pole())
+        let bars = "Error bars of gains, delays and leads are those under these couplings: a swap of models does not fit them again.";
+        above.into_iter().chain(self.farthest_pole()).chain(std::iter::once(bars.to_owned()))
     }
 
     fn farthest_pole(&self) -> Option<String> {
@@ -206,7 +207,7 @@ fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
     let is_of = |output: usize| dataset.on_axis()[Pair::new(output, of.input)];
     let has_rate = (0..dataset.outputs().len()).any(|at| is_of(at) && is_rate(&dataset.outputs()[at]));
     let meaning = match (is_of(of.output), has_rate) {
-        (true, true) if is_acceleration(output) => "stiffness",
+        (true, true) if is_acceleration(output) => "directional stiffness",
         (true, _) if is_rate(output) => "damping",
         _ => "a coupling",
     };

@@ -6,11 +6,12 @@
 //! identified  standard deviations of the response that the model carries, to first order          (M14)
 //! ```
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads};
+use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
 use crate::dataset::{self, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
@@ -112,13 +113,14 @@ pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
 
 /// A model made ready for its response.
 struct ReadModel<'a> {
-    model: &'a Model,
+    model: Cow<'a, Model>,
     prepared: PreparedModel,
 }
 
 impl<'a> ReadModel<'a> {
-    fn of(model: &'a Model) -> Self {
-        Self { model, prepared: PreparedModel::of(&model.dynamics) }
+    fn of(model: Cow<'a, Model>) -> Self {
+        let prepared = PreparedModel::of(&model.dynamics);
+        Self { model, prepared }
     }
 
     /// Bandwidth and phase delay of a response under a correction, and its phase where that speaks for a reversed channel.
@@ -190,6 +192,8 @@ struct PreparedModels<'a> {
     physics: usize,
     /// The physics representative and those that stand in for it.
     of_physics: BTreeMap<usize, ReadModel<'a>>,
+    /// The same with the couplings, as far as they have matrices; empty without couplings.
+    of_coupled: BTreeMap<usize, ReadModel<'a>>,
     identified: ReadModel<'a>,
     swaps: Vec<Swap<'a>>,
 }
@@ -208,15 +212,24 @@ impl<'a> PreparedModels<'a> {
         let bundle = |kind| asked.result.condition.bundle(kind);
         let physics = asked.result.comparison.physics.model;
         let others = swaps.iter().filter(|swap| swap.kind == BundleKind::Physics).map(|swap| swap.model);
-        let prepared = |model: usize| (model, ReadModel::of(&bundle(BundleKind::Physics)[model]));
-        let of_physics = std::iter::once(physics).chain(others).map(prepared).collect();
-        let identified = ReadModel::of(&bundle(BundleKind::Identified)[asked.result.comparison.identified.model]);
+        let models: Vec<usize> = std::iter::once(physics).chain(others).collect();
+        let prepared = |&model: &usize| (model, ReadModel::of(Cow::Borrowed(&bundle(BundleKind::Physics)[model])));
+        let of_physics = models.iter().map(prepared).collect();
+        let coupled = |&model: &usize| {
+            let physics = &bundle(BundleKind::Physics)[model];
+            let of = asked.result.coupled_model(physics.state_space()?, Pade::default()).ok()?.into_owned();
+            Some((model, ReadModel::of(Cow::Owned(Model { dynamics: Dynamics::StateSpace(of), ..physics.clone() }))))
+        };
+        let is_coupled = asked.result.coupled.is_some();
+        let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
+        let flight = &bundle(BundleKind::Identified)[asked.result.comparison.identified.model];
+        let identified = ReadModel::of(Cow::Borrowed(flight));
         let settings = BandwidthSettings {
             command: CommandType::default(),
             band: asked.analysis.study.settings.band,
             above_band: AboveBand::Marked,
         };
-        Self { asked, settings, physics, of_physics, identified, swaps }
+        Self { asked, settings, physics, of_physics, of_coupled, identified, swaps }
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
@@ -274,9 +287,18 @@ impl<'a> PreparedModels<'a> {
             None => PairCorrection::NONE,
             Some(of) => PairCorrection::of(of, pair).ok_or_else(|| "the net gain is not positive".to_owned())?,
         };
-        self.of_physics[&self.physics]
-            .bandwidth(response, correction, self.settings, None)
-            .map_err(|error| error.to_string())
+        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(response, correction, self.settings, None);
+        bandwidth.map_err(|error| error.to_string())
+    }
+
+    /// A physics model as a role has it: with the couplings where it is corrected.
+    fn physics_of(&self, role: RequirementRole, model: usize) -> Result<&ReadModel<'a>, String> {
+        if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
+            return Ok(&self.of_physics[&model]);
+        }
+        self.of_coupled
+            .get(&model)
+            .ok_or_else(|| "the physics model has no matrices that couplings can be put into".to_owned())
     }
 
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
@@ -334,8 +356,10 @@ impl<'a> PreparedModels<'a> {
         };
         let model = if swap.kind == BundleKind::Physics { swap.model } else { self.physics };
         let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
+        let read = self.physics_of(role, model).ok();
         let bandwidth = correction
-            .and_then(|correction| self.of_physics[&model].bandwidth(response, correction, self.settings, None).ok());
+            .zip(read)
+            .and_then(|(correction, read)| read.bandwidth(response, correction, self.settings, None).ok());
         bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
     }
 }

@@ -159,7 +159,8 @@ impl Program {
             };
             (0..inputs).map(entry).collect::<Vec<_>>()
         };
-        let feedback = |to: usize| (0..outputs).map(|from| number(of.feedback()[(to, from)])).collect::<Vec<_>>();
+        let feedback =
+            |to: usize| (0..outputs).map(|from| number(of.feedback()[(to, from)])).collect::<Vec<_>>().join(", ");
         context! {
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),

@@ -41,6 +41,8 @@ pub enum CurveId {
     Scheduled,
     /// The representative physics model with the condition's own correction, its lead filters left out.
     WithoutLeads,
+    /// The representative physics model with couplings alone.
+    Coupled,
     /// The representative physics model of a variant of the study with the variant's own correction.
     Variant,
 }
@@ -183,7 +185,12 @@ impl<'a> ConditionSource<'a> {
             let correction = analysis.correction.clone().without_leads();
             corrected(CurveId::WithoutLeads, Role::WithoutLeads, "corrected without leads", &correction)
         });
-        own.into_iter().chain(scheduled).chain(without).chain(variant).collect()
+        let coupled = analysis.coupled.as_ref().and_then(|_| {
+            let mut model = corrected(CurveId::Coupled, Role::Coupled, "couplings alone", &analysis.correction)?;
+            (model.correction, model.curve.detail) = (GainDelay::NONE, String::new());
+            Some(model)
+        });
+        own.into_iter().chain(scheduled).chain(without).chain(coupled).chain(variant).collect()
     }
 }
 

@@ -19,13 +19,20 @@
 //! ```
 
 use gdcm_core::correction::Channel;
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::{AcrossRole, Analysis, AssessmentChoice, ConditionModes, Unobserved};
+use std::sync::Arc;
+
+use gdcm_core::dataset::{ModelId, Pair};
+use gdcm_core::requirements::LevelBoundaries;
+use gdcm_core::study::{
+    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, Requirements,
+    Unobserved,
+};
 
 mod assessment;
 mod axis;
 mod bode;
 mod condition_source;
+mod couplings;
 mod curve;
 mod drawing;
 mod error;
@@ -39,6 +46,7 @@ mod leads;
 mod mark;
 mod paint;
 mod poles;
+mod requirements;
 mod responses;
 mod role;
 mod tables;
@@ -49,6 +57,7 @@ pub use assessment::*;
 pub use axis::*;
 pub use bode::*;
 pub use condition_source::*;
+pub use couplings::*;
 pub use curve::*;
 pub use drawing::*;
 pub use error::*;
@@ -61,6 +70,7 @@ pub use leads::*;
 pub use mark::*;
 pub use paint::*;
 pub use poles::*;
+pub use requirements::*;
 pub use responses::*;
 pub use role::*;
 pub use ticks::*;
@@ -87,13 +97,17 @@ pub enum FigureKind {
     Poles,
     /// What delay or lead does in each channel of one condition, to ten times the band.
     Leads,
+    /// What couplings do to the loop they make, and to the poles of a condition.
+    Couplings,
+    /// Phase delay over bandwidth of the attitude responses.
+    Requirements,
     /// One response in every condition, coloured by airspeed.
     Airspeeds,
 }
 
 impl FigureKind {
     /// Every kind.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Bode,
         Self::Error,
         Self::Overview,
@@ -103,6 +117,8 @@ impl FigureKind {
         Self::Assessment,
         Self::Poles,
         Self::Leads,
+        Self::Couplings,
+        Self::Requirements,
         Self::Airspeeds,
     ];
 
@@ -118,13 +134,15 @@ impl FigureKind {
             Self::Assessment => "assessment",
             Self::Poles => "poles",
             Self::Leads => "leads",
+            Self::Couplings => "couplings",
+            Self::Requirements => "requirements",
             Self::Airspeeds => "airspeeds",
         }
     }
 
     /// Whether it is made of error bars, which are then computed for it.
     pub fn needs_bars(self) -> bool {
-        self == Self::Evidence
+        matches!(self, Self::Evidence | Self::Requirements)
     }
 
     /// Whether it is a figure of one condition.
@@ -152,6 +170,12 @@ pub struct FigureRequest {
     pub across_role: AcrossRole,
     /// How responses are shown.
     pub bode: BodeOptions,
+    /// What couplings do, where they are shown.
+    pub couplings: Option<Arc<CouplingsAssessment>>,
+    /// What a qualification asks, where that is shown.
+    pub requirements: Option<Arc<Requirements>>,
+    /// The engineer's levels of bandwidth and phase delay.
+    pub levels: LevelBoundaries,
 }
 
 impl FigureRequest {
@@ -159,7 +183,19 @@ impl FigureRequest {
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
         let (measure, across) = (Measure::default(), Across::default());
         let (across_role, bode) = (AcrossRole::default(), BodeOptions::default());
-        Self { kind, pairs, channels, measure, across, assessed: None, across_role, bode }
+        Self {
+            kind,
+            pairs,
+            channels,
+            measure,
+            across,
+            assessed: None,
+            across_role,
+            bode,
+            couplings: None,
+            requirements: None,
+            levels: LevelBoundaries::default(),
+        }
     }
 
     /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
@@ -182,12 +218,21 @@ impl FigureRequest {
             FigureKind::Poles => {
                 let condition = condition?;
                 let modes = ConditionModes::of(&condition.curves.condition, &Unobserved).ok()?;
-                poles_figure(condition, &modes, &self.bode, &|id| match self.bode.zeros_of {
+                let zeros = |id: &ModelId| match self.bode.zeros_of {
                     Some(pair) => zeros_of_model(condition, pair, id),
                     None => Vec::new(),
-                })
+                };
+                let shifts = condition.analysis.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+                poles_figure(condition, &modes, &self.bode, (&zeros, &shifts))
             }
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
+            FigureKind::Requirements => {
+                requirements_figure(self.requirements.as_deref()?, &analysis?.study.dataset, &self.levels)
+            }
+            FigureKind::Couplings => {
+                let shown = condition.map(|of| of.curves.condition.id());
+                return couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit);
+            }
             FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
         })
     }

@@ -1,5 +1,6 @@
 //! Poles of every model of one condition in the s-plane.
 
+use gdcm_core::couplings::PoleShift;
 use gdcm_core::dataset::{BundleKind, ModelId, Pair};
 use gdcm_core::response::finite_zeros;
 use gdcm_core::study::ConditionModes;
@@ -8,6 +9,7 @@ use nalgebra::Complex;
 use super::axis::{Axis, Range};
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
+use super::couplings::pole_shift_marks;
 use super::drawing::{Color, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Dot, DotShape, Dots, Guide, Mark, MarkId, Rule};
@@ -27,16 +29,18 @@ const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
 /// Poles of every model of one condition: all of them, and the window of the slow modes; physics models ×, identified ones +.
-/// `zeros_of` gives those of a model for the response whose zeros are shown, where one is.
+/// `zeros_of` gives those of a model for the response whose zeros are shown, where one is; `shifts` is where couplings move the poles
+/// of the physics representative.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
     modes: &ConditionModes,
     options: &BodeOptions,
-    zeros_of: &dyn Fn(&ModelId) -> Vec<Complex<f64>>,
+    (zeros_of, shifts): (ZerosOf<'_>, &[PoleShift]),
 ) -> Figure {
     let shown = shown_models(source, options);
     let dots = poles(&shown, modes);
     let zeros: Vec<Dots> = options.zeros_of.map(|pair| zeros(source, &shown, (pair, zeros_of))).unwrap_or_default();
+    let moved = if shifts.is_empty() { Vec::new() } else { pole_shift_marks(shifts) };
     let values = |of: fn(&Dot) -> f64| {
         Range::of(dots.iter().flat_map(|dots| &dots.dots).map(of)).unwrap_or(Range::new(-1.0, 1.0))
     };
@@ -47,7 +51,7 @@ pub fn poles_figure(
         let x = Axis::linear("Re λ [rad/s]").showing(Some(real));
         let y = Axis::linear("Im λ [rad/s]").showing(Some(imaginary));
         let panel = Panel::new(x, y).with_all(rays()).with(Rule::vertical(0.0, ZERO)).with_all(dots.clone());
-        let panel = panel.with_all(zeros.clone());
+        let panel = panel.with_all(zeros.clone()).with_all(moved.clone());
         Plot::new(title).panel(panel)
     };
     let title = format!("Poles · {}", source.condition_words());

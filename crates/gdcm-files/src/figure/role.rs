@@ -25,6 +25,8 @@ pub enum Role {
     Scheduled,
     /// The representative physics model with the condition's own correction, its lead filters left out.
     WithoutLeads,
+    /// The representative physics model with couplings alone: no gain, delay or lead of a channel.
+    Coupled,
     /// The physics model with the correction of a variant of the study, laid over for comparison.
     Variant,
     /// A model left out, whatever it was.
@@ -35,7 +37,7 @@ pub enum Role {
 
 impl Role {
     /// Every role of one condition, in the order of a legend.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Nominal,
         Self::Perturbed,
         Self::Representative,
@@ -44,6 +46,7 @@ impl Role {
         Self::Corrected,
         Self::Scheduled,
         Self::WithoutLeads,
+        Self::Coupled,
         Self::Variant,
         Self::Rejected,
     ];
@@ -76,6 +79,7 @@ impl Role {
             Self::Corrected => "corrected",
             Self::Scheduled => "scheduled",
             Self::WithoutLeads => "without leads",
+            Self::Coupled => "couplings alone",
             Self::Variant => "variant",
             Self::Rejected => "rejected",
             Self::OfAirspeed(_) => "condition",
@@ -88,6 +92,7 @@ impl Role {
             Self::Identified => "identified",
             Self::IdentifiedRepresentative => "identified-representative",
             Self::WithoutLeads => "without-leads",
+            Self::Coupled => "couplings-alone",
             _ => self.name(),
         }
     }
@@ -112,6 +117,7 @@ impl Role {
             Self::Corrected => line(Hue::Corrected, 2.0, Dash::Solid),
             Self::Scheduled => line(Hue::Corrected, 1.6, Dash::Long),
             Self::WithoutLeads => line(Hue::Corrected, 1.4, Dash::ShortDashDot),
+            Self::Coupled => line(Hue::Perturbed, 1.8, Dash::ShortDashDot),
             Self::Variant => line(Hue::Corrected, 1.8, Dash::Dotted),
             Self::Rejected => line(Hue::Rejected, 1.0, Dash::Dotted),
             Self::OfAirspeed(step) => line(Hue::OfAirspeed(step), 1.8, Dash::Solid),
@@ -140,7 +146,7 @@ impl Role {
             Self::Nominal => 3,
             Self::Representative => 4,
             Self::IdentifiedRepresentative => 5,
-            Self::WithoutLeads => 6,
+            Self::WithoutLeads | Self::Coupled => 6,
             Self::Variant => 7,
             Self::Scheduled => 8,
             Self::Corrected => 9,

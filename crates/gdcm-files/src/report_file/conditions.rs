@@ -315,10 +315,11 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     }
     if let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) {
         let title = format!("Condition {id}, poles of its models");
+        let shifts = source.analysis.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
         page.figure(
-            &poles_figure(source, &modes, &options, &|_| Vec::new()),
+            &poles_figure(source, &modes, &options, (&|_| Vec::new(), &shifts)),
             &title,
-            "Physics models ×, identified ones +; rays of equal damping ratio. A correction moves no pole.",
+            "Physics models ×, identified ones +; rays of equal damping ratio. A correction of channels moves no pole; couplings do.",
         );
     }
 }

@@ -165,8 +165,13 @@ impl<'a> Context<'a> {
     /// The two representatives.
     fn models(&self) -> Vec<String> {
         let of = |kind| self.result.representative_name(kind);
+        let couplings = self
+            .result
+            .coupled
+            .as_ref()
+            .map_or_else(String::new, |_| format!(", with {} (M16)", self.settings().couplings.name()));
         vec![
-            format!("physics representative {} (H_sim)", of(BundleKind::Physics)),
+            format!("physics representative {}{couplings} (H_sim)", of(BundleKind::Physics)),
             format!("identified representative {} (H_ref)", of(BundleKind::Identified)),
         ]
     }

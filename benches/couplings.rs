@@ -1,0 +1,157 @@
+//! `cargo bench --bench couplings`: the joint fit of mixing and feedback, what depends on it, and what judges it.
+//!
+//! Figures to reach, two cores, 6 x 4 responses at 200 frequencies in 11 conditions: a fit of five solves <= 60 ms, what depends on it
+//! <= 5 ms more, a drag of alpha as without couplings.
+
+#![expect(missing_docs, reason = "criterion's macros make undocumented functions")]
+
+use std::hint::black_box;
+use std::path::Path;
+use std::sync::Arc;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use nalgebra::{Complex, DMatrix};
+
+use gdcm::executor::Pool;
+use gdcm_core::couplings::{CouplingCondition, CouplingProblem, Unknown, fit_couplings};
+use gdcm_core::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
+use gdcm_core::executor::Sequential;
+use gdcm_core::response::FrequencyResponse;
+use gdcm_core::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+use gdcm_files::load_dataset;
+
+#[path = "stopwatch/mod.rs"]
+mod stopwatch;
+
+use stopwatch::shortest;
+
+fn example() -> Arc<Dataset> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/example-dataset.json.gz");
+    load_dataset(Path::new(path)).expect("the reference dataset is there").dataset
+}
+
+fn study() -> Study {
+    let mut study = Study::new(example());
+    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).expect("a choice");
+    study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).expect("a choice");
+    study
+}
+
+fn problem() -> CouplingProblem {
+    let analysis = Engine::default().analyze(&study(), &Unobserved).expect("nobody stops it");
+    analysis.fitted_couplings().expect("the example can be fitted").problem.clone()
+}
+
+fn live_loop(criterion: &mut Criterion) {
+    let problem = problem();
+    let mut group = criterion.benchmark_group("couplings");
+    group.sample_size(20);
+    group.bench_function("fit, one core", |bencher| {
+        bencher.iter(|| fit_couplings(black_box(&problem), &Sequential, &Unobserved));
+    });
+    group.bench_function("fit, all cores", |bencher| {
+        bencher.iter(|| fit_couplings(black_box(&problem), &Pool, &Unobserved));
+    });
+    let mut turn = 0.0;
+    let mut again = |name: &str, change: &dyn Fn(&mut Study, f64)| {
+        let (mut engine, mut study) = (Engine::with_executor(Box::new(Pool)), study());
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                turn += 1.0;
+                change(&mut study, turn);
+                engine.analyze(&study, &Unobserved)
+            });
+        });
+    };
+    again("alpha dragged", &|study, turn| {
+        study.apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)).expect("within its range");
+    });
+    let rejected = |study: &mut Study, turn: f64| {
+        let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+        let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
+        study.apply(&edit).expect("others are kept");
+    };
+    again("model rejected, fitted again", &rejected);
+    again("the same without couplings", &|study, turn| {
+        study.apply(&setting::COUPLINGS.to(CouplingCorrection::None)).expect("a choice");
+        rejected(study, turn);
+    });
+    group.sample_size(10);
+    group.bench_function("what they are worth, everything anew, all cores", |bencher| {
+        let study = study();
+        let engine = || Engine::with_executor(Box::new(Pool));
+        bencher.iter(|| engine().assess_couplings(&study, study.settings.couplings, &Unobserved));
+    });
+    group.finish();
+}
+
+/// The joint fit beside one that writes every row of its least-squares problem out.
+fn ratios(_: &mut Criterion) {
+    let problem = problem();
+    let unknowns = fit_couplings(&problem, &Sequential, &Unobserved).expect("the example can be fitted").unknowns;
+    let ours = shortest(10, || fit_couplings(&problem, &Sequential, &Unobserved));
+    let plain =
+        shortest(2, || (0..problem.options.solves).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns)))));
+    let rows = problem.conditions.len() * problem.omega.len() * problem.outputs() * problem.inputs() * 2;
+    let products = (problem.options.solves * rows * unknowns.len() * unknowns.len()) as f64;
+    println!(
+        "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
+         multiply-adds, of which the fit's blocks take a part)",
+        unknowns.len(),
+        plain.div_duration_f64(ours),
+        products / 1e9
+    );
+}
+
+/// One solve: dense rows of each condition, their product with themselves, Cholesky's factors.
+fn plain_solve(problem: &CouplingProblem, unknowns: &[Unknown]) -> Option<DMatrix<f64>> {
+    let count = unknowns.len();
+    let (mut normal, mut right) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
+    for condition in &problem.conditions {
+        let (rows, wanted) = plain_rows(problem, condition, unknowns);
+        normal += rows.tr_mul(&rows);
+        right += rows.tr_mul(&wanted);
+    }
+    for place in 0..count {
+        normal[(place, place)] *= 1.0 + problem.options.ridge;
+    }
+    Some(normal.cholesky()?.solve(&right))
+}
+
+fn plain_rows(
+    problem: &CouplingProblem,
+    condition: &CouplingCondition,
+    unknowns: &[Unknown],
+) -> (DMatrix<f64>, DMatrix<f64>) {
+    let (outputs, inputs) = (problem.outputs(), problem.inputs());
+    let at = |of: &FrequencyResponse, k: usize| -> DMatrix<Complex<f64>> {
+        DMatrix::from_fn(outputs, inputs, |output, input| of.curve(Pair::new(output, input))[k])
+    };
+    let points = problem.omega.len();
+    let mut rows = DMatrix::zeros(points * outputs * inputs * 2, unknowns.len());
+    let mut wanted = DMatrix::zeros(rows.nrows(), 1);
+    for k in 0..points {
+        let (f, flight) = (at(&condition.physics, k), at(&condition.flight, k));
+        for (place, (output, input)) in
+            (0..outputs).flat_map(|output| (0..inputs).map(move |input| (output, input))).enumerate()
+        {
+            let row = 2 * (k * outputs * inputs + place);
+            let weight = 1.0 / flight[(output, input)].norm();
+            for (column, unknown) in unknowns.iter().enumerate() {
+                let entry = match *unknown {
+                    Unknown::Mixing { to, from, .. } if from == input => f[(output, to)],
+                    Unknown::Mixing { .. } => continue,
+                    Unknown::Feedback { input: to, output: of } => f[(output, to)] * flight[(of, input)],
+                };
+                rows[(row, column)] = weight * entry.re;
+                rows[(row + 1, column)] = weight * entry.im;
+            }
+            wanted[row] = weight * flight[(output, input)].re;
+            wanted[row + 1] = weight * flight[(output, input)].im;
+        }
+    }
+    (rows, wanted)
+}
+
+criterion_group!(benches, live_loop, ratios);
+criterion_main!(benches);

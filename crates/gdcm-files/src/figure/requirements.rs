@@ -1,0 +1,117 @@
+//! What a qualification asks: phase delay over bandwidth of every attitude response (M17.1).
+
+use gdcm_core::dataset::{Dataset, Pair};
+use gdcm_core::requirements::LevelBoundaries;
+use gdcm_core::study::{BandwidthFinding, RequirementRole, Requirements};
+use gdcm_core::units::s_to_ms;
+
+use super::axis::Axis;
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Figure, Panel, Plot};
+use super::mark::{Curve, Dot, DotShape, Dots, Intervals, Mark, MarkId};
+
+const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
+const BAR: Stroke = Stroke::solid(Color::DIM, 0.7);
+const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
+
+/// How the model of a role is drawn.
+fn look(role: RequirementRole) -> (DotShape, Color) {
+    match role {
+        RequirementRole::Physics => (DotShape::Circle, Color::of(Hue::Perturbed)),
+        RequirementRole::Corrected => (DotShape::Square, Color::of(Hue::Corrected)),
+        RequirementRole::Scheduled => (DotShape::Triangle, Color::of(Hue::Corrected)),
+        RequirementRole::Identified => (DotShape::Cross, Color::of(Hue::Identified)),
+    }
+}
+
+/// Bandwidth \[rad/s\] and phase delay \[ms\], where there are both.
+fn place(of: &BandwidthFinding) -> Option<[f64; 2]> {
+    Some([of.omega_bw_rad_s?, s_to_ms(of.phase_delay_s?)])
+}
+
+/// The responses that have a bandwidth and a phase delay in some condition.
+pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
+    let mut pairs: Vec<Pair> = Vec::new();
+    for of in requirements.bandwidth.iter().filter(|of| place(of).is_some()) {
+        if !pairs.contains(&of.pair) {
+            pairs.push(of.pair);
+        }
+    }
+    pairs
+}
+
+/// Phase delay over bandwidth, a plot for each attitude response: a mark for each condition and model, a line from the physics model
+/// to the corrected one, intervals where there are some, and the engineer's levels. A number that rests on a model beyond the band is
+/// grey.
+pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, levels: &LevelBoundaries) -> Figure {
+    let plots = bandwidth_pairs(requirements).into_iter().map(|pair| {
+        let name = dataset.pair_name(pair);
+        let axis = &dataset.outputs()[pair.output].name;
+        let (x, y) = (Axis::linear("bandwidth [rad/s]"), Axis::linear("phase delay [ms]").including(0.0));
+        let panel = Panel::new(x, y).with_all(boundaries(levels, axis)).with_all(marks(requirements, pair));
+        Plot::new(format!("{name}: attitude")).panel(panel)
+    });
+    let level = 100.0 * requirements.interval_level;
+    let caption = format!(
+        "Bars: {level:.0} % intervals. Grey: rests on the model beyond the band. A line joins physics and corrected of a condition. \
+         These numbers are no qualification."
+    );
+    Figure::new("Bandwidth and phase delay").caption(caption).columns(2).aspect(0.66).plots(plots)
+}
+
+fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<Item = Mark> + 'a {
+    levels.of_axis(axis).map(|of| {
+        let [x, y]: [Vec<f64>; 2] = [
+            of.points.iter().map(|point| point[0]).collect(),
+            of.points.iter().map(|point| s_to_ms(point[1])).collect(),
+        ];
+        Curve::new(&of.name, LEVEL, x, y).key(&of.name).into()
+    })
+}
+
+fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
+    let of_pair = || requirements.bandwidth.iter().filter(move |of| of.pair == pair);
+    let of_role = |role: RequirementRole| of_pair().filter(move |of| of.role == role);
+    let mut marks: Vec<Mark> = Vec::new();
+    for from in of_role(RequirementRole::Physics) {
+        let to = requirements.bandwidth_of(from.condition, pair, RequirementRole::Corrected);
+        if let (Some(from), Some(to)) = (place(from), to.and_then(place)) {
+            marks.push(Curve::new("corrected", WAY, [from[0], to[0]], [from[1], to[1]]).into());
+        }
+    }
+    let delays = of_pair().filter_map(|of| {
+        let [low, high] = of.interval.get("phase_delay_s").copied()?;
+        Some([place(of)?[0], s_to_ms(low), s_to_ms(high)])
+    });
+    let ends: Vec<[f64; 3]> = delays.collect();
+    if !ends.is_empty() {
+        marks.push(Intervals { name: "interval".to_owned(), stroke: BAR, ends }.into());
+    }
+    for of in of_pair() {
+        if let (Some([low, high]), Some([_, delay])) = (of.interval.get("omega_bw_rad_s"), place(of)) {
+            marks.push(Curve::new("interval of the bandwidth", BAR, [*low, *high], [delay, delay]).into());
+        }
+    }
+    for role in RequirementRole::ALL {
+        let (shape, color) = look(role);
+        for rests in [false, true] {
+            let is_so =
+                |of: &&BandwidthFinding| (of.rests_above("omega_bw_rad_s") || of.rests_above("phase_delay_s")) == rests;
+            let dots = of_role(role).filter(is_so).filter_map(|of| {
+                let [x, y] = place(of)?;
+                let id = Some(MarkId::Condition(of.condition));
+                // One number a condition is enough to find the others by.
+                let label = if role == RequirementRole::Corrected { of.condition.to_string() } else { String::new() };
+                Some(Dot { x, y, label, id })
+            });
+            let dots: Vec<Dot> = dots.collect();
+            let color = if rests { color.tint(45) } else { color };
+            let of_role = Dots::new(role.name(), shape, color).filled(!rests);
+            let of_role = if rests { of_role } else { of_role.key(role.name()) };
+            if !dots.is_empty() {
+                marks.push(Dots { dots, ..of_role }.into());
+            }
+        }
+    }
+    marks
+}

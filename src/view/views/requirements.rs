@@ -1,0 +1,246 @@
+//! Requirements: the questions of a qualification after J, of physics, corrected, scheduled and identified models side by side (M17).
+
+use std::sync::Arc;
+
+use egui::{Color32, Label, Panel, Ui, Vec2, vec2};
+use gdcm_core::dataset::Pair;
+use gdcm_core::requirements::ModeVerdict;
+use gdcm_core::study::{RequirementRole, Requirements, RequirementsJob, Table};
+use gdcm_core::units::{s_to_ms, telling};
+use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs};
+
+use super::View;
+use crate::view::CurveCommand;
+use crate::view::command::Command;
+use crate::view::controls::restore_panel_size;
+use crate::view::figures::figure_of;
+use crate::view::palette::Palette;
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
+use crate::view::settings_panel::choice_ui;
+use crate::view::state::State;
+use crate::view::table_view::{TableLook, table_ui};
+
+/// A plot is never smaller \[pt\].
+const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
+/// Part of the height that the table has at first.
+const TABLE_PART: f32 = 0.34;
+
+/// Which table stands below the plots.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RequirementsTable {
+    /// Bandwidth and phase delay of every response, condition and model.
+    #[default]
+    Bandwidth,
+    /// Modes of the condition shown.
+    Modes,
+    /// Mean J and shares of the band of every condition and model.
+    Summary,
+}
+
+/// Which table is shown. Laid out from right to left.
+pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let mut chosen = state.display.requirements_table;
+    let choices = [
+        (RequirementsTable::Summary, "summary", "Mean J, and the share of the band inside the MUAD envelopes"),
+        (RequirementsTable::Modes, "modes", "Modes of the condition, against their tolerances"),
+        (RequirementsTable::Bandwidth, "bandwidth", "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)"),
+    ];
+    choice_ui(ui, "Table of requirements", &mut chosen, &choices);
+    if chosen != state.display.requirements_table {
+        commands.push(Command::ShowRequirements(chosen));
+    }
+}
+
+/// The job of what is shown; none until there is an analysis.
+pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
+    let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
+    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned() })
+}
+
+/// Plots of bandwidth and phase delay, and a table below them.
+pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(requirements) = state.requirements().cloned() else {
+        return drop(ui.label(palette.dim(state.results.absence())));
+    };
+    let words =
+        "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
+    ui.add(Label::new(palette.small(words)).truncate());
+    for missing in &requirements.missing {
+        let condition = missing.condition.map_or_else(String::new, |id| format!("Condition {id}: "));
+        ui.add(
+            Label::new(palette.small_warning(format!("{condition}no {}: {}", missing.what, missing.why))).truncate(),
+        );
+    }
+    for caution in &requirements.cautions {
+        let words = format!("⚠ Condition {}: {}", caution.condition, caution.text);
+        ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
+    }
+    restore_panel_size(ui, "requirements");
+    let size = TABLE_PART * ui.available_height();
+    let panel = Panel::bottom("requirements").resizable(true).default_size(size).min_size(60.0);
+    panel.show(ui, |ui| requirements_table_ui(ui, state, &requirements, palette, commands));
+    plots_ui(ui, state, &requirements, palette, commands);
+}
+
+fn plots_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    requirements: &Requirements,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
+    let pairs = bandwidth_pairs(requirements);
+    let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let scene = FigureScene {
+        name: "requirements",
+        figure: &figure,
+        selected: Some(MarkId::Condition(state.condition().id())),
+        highlighted: None,
+        columns: &[],
+        zooms: true,
+        is_compact: false,
+        accented: pairs.iter().position(|pair| *pair == state.display.pair),
+        least: LEAST_PLOT,
+        message: "No on-axis response is of an angle or its rate, or none crosses −135° and −180°: the table says why",
+        words: (&BandwidthWords { state, requirements, pairs: &pairs }, 0),
+    };
+    for event in figure_ui(ui, &scene, &mut view, palette) {
+        if let FigureEvent::Clicked(plot, MarkId::Condition(id), _) = event
+            && let Some(pair) = pairs.get(plot)
+        {
+            commands.extend(marked_in_bode(requirements, *pair, id));
+        }
+    }
+    state.display.figures.insert(View::Requirements, view);
+}
+
+/// The response in focus in Bode, with the frequencies marked that its bandwidth and phase delay are read at.
+fn marked_in_bode(requirements: &Requirements, pair: Pair, id: gdcm_core::dataset::ConditionId) -> Vec<Command> {
+    let mut commands = vec![Command::SelectCondition(id), Command::FocusPair(pair), CurveCommand::UnpinCursors.into()];
+    if let Some(of) = requirements.bandwidth_of(id, pair, RequirementRole::Corrected) {
+        let crossings = [of.omega_bw_rad_s, of.omega_180_rad_s];
+        commands.extend(crossings.into_iter().flatten().map(|omega| CurveCommand::PinCursor(omega).into()));
+    }
+    commands.push(Command::ShowView(View::Bode));
+    commands
+}
+
+fn requirements_table_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    requirements: &Requirements,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let id = state.condition().id();
+    let (table, color) = match state.display.requirements_table {
+        RequirementsTable::Bandwidth => (requirements.bandwidth_table(state.dataset()), CellColor::None),
+        RequirementsTable::Modes => (requirements.mode_table(id), CellColor::Modes),
+        RequirementsTable::Summary => (requirements.summary_table(), CellColor::Summary),
+    };
+    ui.add(Label::new(palette.small(&table.title)).truncate());
+    if table.rows.is_empty() {
+        return drop(ui.label(palette.dim("Nothing: one of the two models has no matrices, or was not analysed.")));
+    }
+    let color = |row: usize, column: usize| color.of(requirements, &table, (row, column), palette);
+    let selected = |row: usize| table.columns[0] == "condition" && table.rows[row][0] == id.to_string();
+    let look = TableLook { color: &color, selected: &selected };
+    let mut sorting = state.display.requirements_sorting;
+    if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands) {
+        commands.extend(went_to(state, requirements, click.row));
+    }
+    state.display.requirements_sorting = sorting;
+}
+
+/// Where a click on a row goes.
+fn went_to(state: &State, requirements: &Requirements, row: usize) -> Vec<Command> {
+    match state.display.requirements_table {
+        RequirementsTable::Bandwidth => {
+            let of = requirements.bandwidth.get(row);
+            of.map(|of| marked_in_bode(requirements, of.pair, of.condition)).unwrap_or_default()
+        }
+        RequirementsTable::Summary => {
+            requirements.summary.get(row).map(|of| Command::SelectCondition(of.condition)).into_iter().collect()
+        }
+        RequirementsTable::Modes => vec![Command::ShowView(View::Poles)],
+    }
+}
+
+/// How the cells of a table are coloured.
+#[derive(Clone, Copy)]
+enum CellColor {
+    None,
+    /// Beyond the tolerance: warning; within it: good.
+    Modes,
+    /// Mean J above 100, the limit of what is acceptable (M4): warning.
+    Summary,
+}
+
+impl CellColor {
+    fn of(
+        self,
+        requirements: &Requirements,
+        table: &Table,
+        (row, column): (usize, usize),
+        palette: &Palette,
+    ) -> Option<Color32> {
+        let heading = table.columns[column].as_str();
+        match self {
+            Self::None => {
+                let of = requirements.bandwidth.get(row)?;
+                let name =
+                    ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
+                let rests = |name: &&&str| of.rests_above(name);
+                name.get(column.checked_sub(4)?).filter(rests).map(|_| palette.dim_text)
+            }
+            Self::Modes if heading == "tolerance" => {
+                let cell = &table.rows[row][column];
+                let is = |verdict: ModeVerdict| cell.starts_with(verdict.words());
+                let color = if is(ModeVerdict::Within) { palette.good } else { palette.dim_text };
+                Some(if is(ModeVerdict::Outside) { palette.warning } else { color })
+            }
+            Self::Summary if heading.starts_with('J') => {
+                let of = requirements.summary_of_row(row)?;
+                let cost = if heading == "J on-axis" { of.mean_j_on_axis } else { of.mean_j_all };
+                cost.map(|cost| if cost > ACCEPTABLE { palette.warning } else { palette.good })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// J up to which a model is acceptable (M4).
+const ACCEPTABLE: f64 = 100.0;
+
+/// What the plots of bandwidth say.
+struct BandwidthWords<'a> {
+    state: &'a State,
+    requirements: &'a Requirements,
+    pairs: &'a [Pair],
+}
+
+impl FigureWords for BandwidthWords<'_> {
+    fn plot(&self, plot: usize) -> String {
+        let name = self.pairs.get(plot).map_or_else(String::new, |pair| self.state.dataset().pair_name(*pair));
+        format!("Phase delay over bandwidth of {name}")
+    }
+
+    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
+        let (MarkId::Condition(id), Some(pair)) = (id, self.pairs.get(plot)) else { return };
+        ui.label(format!("condition {id}"));
+        for role in RequirementRole::ALL {
+            let Some(of) = self.requirements.bandwidth_of(*id, *pair, role) else { continue };
+            let (Some(bandwidth), Some(delay_s)) = (of.omega_bw_rad_s, of.phase_delay_s) else { continue };
+            let words =
+                format!("{}: {} rad/s, {} ms", role.name(), telling(bandwidth, 2), telling(s_to_ms(delay_s), 0));
+            ui.weak(words);
+        }
+        ui.weak("click: marked in Bode");
+    }
+}
+
+/// The requirements for a figure.
+pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
+    state.requirements().filter(|_| kind == FigureKind::Requirements).cloned()
+}

@@ -59,7 +59,7 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
 }
 
 #[test]
-fn every_export_carries_the_couplings_and_octave_closes_the_same_loop_as_state_space() {
+fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
     let desk = Desk::new();
     let export = |format: &str, name: &str, more: &[&str]| {
         let ended = desk.gdcm(&[&["export", "--as", format, "--out", name, "--phase", "none"], more].concat());
@@ -70,11 +70,7 @@ fn every_export_carries_the_couplings_and_octave_closes_the_same_loop_as_state_s
     let text = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     for (format, name, words) in [
         ("m", "my_study.m", "mixing, feedback] = my_study(airspeed_kt, D)"),
-        ("py", "c.py", "def gdcm_couplings(airspeed_kt):"),
-        ("h", "c.h", "static inline int gdcm_close_feedback("),
         ("table-csv", "t.csv", "mixing of input LAT from LON [-]"),
-        ("csv", "c.csv", "feedback_NZ"),
-        ("json", "c.json", "\"feedback_sd\""),
     ] {
         export(format, name, &feedback);
         assert!(text(name).contains(words), "{name}: {}", text(name));
@@ -98,9 +94,9 @@ fn every_export_carries_the_couplings_and_octave_closes_the_same_loop_as_state_s
         load c.mat; load t.mat; c = corrections.couplings; \
         assert(isequal(size(c.feedback), [4, 6]) && isequal(c.feedback, gdcm_table.feedback)); \
         printf('%.17g ', max(abs(found - expected)(:)) / max(abs(expected)(:)), \
-               max(abs(direct - expected)(:)) / max(abs(expected)(:)), max(abs(k - c.feedback)(:)), norm(d));";
+               max(abs(direct - expected)(:)) / max(abs(expected)(:)), max(abs(k - c.feedback)(:)));";
     let Some(found) = octave(&desk, program) else { return };
-    assert!(found[0] < 1e-9 && found[1] < 1e-9 && found[2] < 1e-15 && found[3] > 0.0, "{found:?}");
+    assert!(found[0] < 1e-9 && found[1] < 1e-9 && found[2] < 1e-15, "{found:?}");
 }
 
 #[test]

@@ -298,7 +298,7 @@ fn delays_of_discrete_time_are_exact_or_refused() {
     assert!(!desk.path("m.npz").exists());
 }
 
-fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
+pub(crate) fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
     let Ok(output) = Command::new("octave-cli").args(["--eval", program]).current_dir(&desk.directory).output() else {
         eprintln!("SKIPPED: octave-cli is not installed, files for MATLAB are not read by it");
         return None;

@@ -8,6 +8,7 @@ use gdcm_files::{LoadedDataset, embedded_example, load_dataset};
 
 mod assembling;
 mod commands;
+mod couplings;
 mod documents;
 mod exports;
 #[path = "../../crates/gdcm-files/tests/suite/made_up.rs"]

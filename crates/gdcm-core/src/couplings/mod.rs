@@ -51,6 +51,8 @@ pub use unknown::*;
 use weighted_condition::*;
 
 #[cfg(test)]
+mod invariance_tests;
+#[cfg(test)]
 mod known_answers_tests;
 #[cfg(test)]
 mod missing_response_tests;

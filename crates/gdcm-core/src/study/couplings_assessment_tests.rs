@@ -57,6 +57,9 @@ fn the_diagnosis_comes_first_and_what_is_within_its_bar_is_not_told() {
     let verdict = said.iter().position(|of| of.text.starts_with("Off the axis, J of conditions left out is "));
     assert!(swashplate.unwrap() < verdict.unwrap(), "{said:#?}");
     assert!(said.iter().all(|of| !of.text.contains("switch the couplings off")), "{said:#?}");
+    assert!(
+        ASSESSED.offer().unwrap().starts_with("With mixing and feedback off-axis J of conditions left out would be ")
+    );
     let mixing = ASSESSED.mixing(ASSESSED.mean_airspeed_kt());
     for (entry, half_width) in mixing.iter().filter_map(|entry| Some((entry, entry.half_width?))) {
         assert!(entry.is_within_bar == (entry.value.abs() <= half_width) || entry.value == 1.0);

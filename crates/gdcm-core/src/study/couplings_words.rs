@@ -8,7 +8,7 @@ use crate::couplings::{
 use crate::dataset::{Channel, ConditionId, Dataset, Pair};
 use crate::units::{number, signed, telling};
 
-use super::{CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
+use super::{CouplingCost, CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
 
 /// Entries told of each matrix, the largest.
 const TOLD: usize = 3;
@@ -67,6 +67,17 @@ impl CouplingsAssessment {
             remarks.push(Remark::new(RemarkKind::Caution, text));
         }
         remarks
+    }
+
+    /// What a study without these couplings is offered: nothing where they are not worth it, or no condition was left out.
+    pub fn offer(&self) -> Option<String> {
+        let cost = self.costs.left_out.filter(CouplingCost::is_worth_it)?;
+        Some(format!(
+            "With {} off-axis J of conditions left out would be {} in place of {}.",
+            self.couplings.name(),
+            telling(cost.with.others?, 1),
+            telling(cost.without.others?, 1)
+        ))
     }
 
     /// What the couplings do above the band, and how far poles move in it.

@@ -7,7 +7,7 @@ use gdcm_core::dataset::{BundleKind, ConditionId, Dataset, FlightState, Model, M
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::response::GainDelay;
 use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm_core::study::{ConditionAnalysis, ConditionCurves, PhaseCorrection, Settings, Study};
+use gdcm_core::study::{ConditionAnalysis, ConditionCurves, CouplingCorrection, PhaseCorrection, Settings, Study};
 use gdcm_core::units::s_to_ms;
 
 use super::bode::BodeOptions;
@@ -202,8 +202,13 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
         PhaseCorrection::None => " No correction of the phase.",
         PhaseCorrection::Lead => " A delay or a lead filter in each channel.",
     };
+    let couplings = match settings.couplings {
+        CouplingCorrection::None => "",
+        CouplingCorrection::Mixing => " The physics models with a mixing of the inputs.",
+        CouplingCorrection::MixingAndFeedback => " The physics models with mixing and feedback.",
+    };
     format!(
-        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}",
+        "{}. Band {low} to {high} rad/s, {} frequencies; \u{3b1} {} for gains, {} for delays.{phase}{couplings}",
         dataset.name(),
         settings.points,
         compact(settings.alpha_gain),

@@ -1,0 +1,128 @@
+//! Mixing and feedback from the command line: what is printed, and what stands in the files (M16).
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::commands::Desk;
+use crate::exports::octave;
+use crate::{entries, read_json};
+
+const COUPLED: [&str; 4] = ["--phase", "lead", "--couplings", "feedback"];
+
+fn numbers(rows: &Value) -> Vec<Vec<f64>> {
+    let row = |row: &Value| entries(row).iter().map(|value| value.as_f64().unwrap()).collect();
+    entries(rows).iter().map(row).collect()
+}
+
+#[test]
+fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&[&["analyze", "--out", "with"], &COUPLED[..]].concat());
+    ended.assert_done();
+    for words in [
+        "mixing and feedback fitted to 11 conditions",
+        "LAT takes 4.",
+        "as a swashplate phase of 2.",
+        "Off the axis, J of conditions left out is ",
+        "condition left out",
+        "Above the band, at 120 rad/s, the couplings change ",
+        "newly unstable with the couplings",
+    ] {
+        assert!(ended.out.contains(words), "{words}: {}", ended.out);
+    }
+    let found = read_json(&desk.path("with/corrections.json"));
+    assert_eq!(found["settings"]["couplings"], "feedback");
+    let (of, condition) = (&found["couplings"], &found["conditions"][9]["couplings"]);
+    let (feedback, deviations) = (numbers(&of["feedback"]), numbers(&of["feedback_sd"]));
+    assert_eq!((feedback.len(), feedback[0].len()), (4, 6));
+    assert!(deviations.iter().flatten().all(|deviation| *deviation > 0.0));
+    let left_out = &of["left_out"];
+    assert!(left_out["others"].as_f64() < left_out["without_others"].as_f64(), "{left_out}");
+    assert!(of["residual"].as_f64().unwrap() < 1e-12);
+    let mixing = numbers(&condition["mixing"]);
+    assert!((0..4).all(|input| mixing[input][input] == 1.0) && (0.03..0.07).contains(&mixing[1][0]), "{mixing:?}");
+    assert!(condition["least_singular_value"]["value"].as_f64().unwrap() > 0.5);
+    assert!(entries(&condition["poles_moved"]).iter().any(|of| of["before_real_rad_s"] != of["after_real_rad_s"]));
+    let table = fs::read_to_string(desk.path("with/corrections.csv")).unwrap();
+    let mut lines = table.lines();
+    assert!(lines.next().unwrap().ends_with(",mixing_LON,mixing_LAT,mixing_PED,mixing_COL,feedback_P,feedback_Q,feedback_R,feedback_NX,feedback_NY,feedback_NZ"));
+    let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(cells[cells.len() - 6].parse(), Ok(feedback[0][0]));
+
+    desk.gdcm(&["analyze", "--phase", "lead", "--out", "without"]).assert_done();
+    let without = read_json(&desk.path("without/corrections.json"));
+    assert!(without.get("couplings").is_none() && without["settings"].get("couplings").is_none());
+    assert!(!fs::read_to_string(desk.path("without/corrections.csv")).unwrap().contains("mixing_"));
+    assert_ne!(without["conditions"][9]["G"], found["conditions"][9]["G"]);
+    assert_eq!(without["conditions"][9]["physics_representative"], found["conditions"][9]["physics_representative"]);
+}
+
+#[test]
+fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
+    let desk = Desk::new();
+    let export = |format: &str, name: &str, more: &[&str]| {
+        let ended = desk.gdcm(&[&["export", "--as", format, "--out", name, "--phase", "none"], more].concat());
+        ended.assert_done();
+        ended.out
+    };
+    let feedback = ["--couplings", "feedback"];
+    let text = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
+    for (format, name, words) in [
+        ("m", "my_study.m", "mixing, feedback] = my_study(airspeed_kt, D)"),
+        ("table-csv", "t.csv", "mixing of input LAT from LON [-]"),
+    ] {
+        export(format, name, &feedback);
+        assert!(text(name).contains(words), "{name}: {}", text(name));
+    }
+    assert!(text("t.csv").contains("# feedback to input PED: P "), "{}", text("t.csv"));
+    export("table-mat", "t.mat", &feedback);
+    export("mat", "c.mat", &feedback);
+    let one = ["--condition", "7", "--couplings"];
+    let said = export("state-space", "with.mat", &[&one[..], &["feedback"]].concat());
+    assert!(said.contains("with mixing and feedback, exact"), "{said}");
+    export("state-space", "plain.mat", &[&one[..], &["none"]].concat());
+    export("m", "plain_gains.m", &["--couplings", "none"]);
+    // The loop of the exported function, closed through the feed-through around the plain model, beside the exported matrices.
+    let program = "load with.mat; w = models; load plain.mat; p = models; w3 = 3i * eye(size(w.A)); p3 = 3i * eye(size(p.A)); \
+        [Mi, Mo, ~, ~] = plain_gains(w.airspeed_kt); \
+        h = Mo \\ (p.C * ((p3 - p.A) \\ p.B) + p.D) / Mi; d = Mo \\ p.D / Mi; \
+        [Mi, Mo, ~, ~, m, k] = my_study(w.airspeed_kt); [~, ~, ~, ~, ~, f] = my_study(w.airspeed_kt, d); \
+        u2 = eye(4) - f * (h - d); u2 = u2 \\ ((eye(4) + f * d) * m); \
+        found = Mo * h * u2 * Mi; expected = w.C * ((w3 - w.A) \\ w.B) + w.D; \
+        direct = Mo * ((eye(6) - h * k) \\ (h * m)) * Mi; \
+        load c.mat; load t.mat; c = corrections.couplings; \
+        assert(isequal(size(c.feedback), [4, 6]) && isequal(c.feedback, gdcm_table.feedback)); \
+        printf('%.17g ', max(abs(found - expected)(:)) / max(abs(expected)(:)), \
+               max(abs(direct - expected)(:)) / max(abs(expected)(:)), max(abs(k - c.feedback)(:)));";
+    let Some(found) = octave(&desk, program) else { return };
+    assert!(found[0] < 1e-9 && found[1] < 1e-9 && found[2] < 1e-15, "{found:?}");
+}
+
+#[test]
+fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
+    let desk = Desk::new();
+    let ids: Vec<String> = crate::EXAMPLE.dataset.conditions().iter().map(|of| of.id().to_string()).collect();
+    let held_out: Vec<&str> = ids[1..].iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
+    let ended = desk.gdcm(&[&["analyze", "--out", "one"], &COUPLED[..], &held_out[..]].concat());
+    ended.assert_done();
+    assert!(ended.out.contains("Couplings of 1 condition: three are needed"), "{}", ended.out);
+    let wrong = desk.gdcm(&["analyze", "--out", "none", "--couplings", "all"]);
+    assert_eq!(wrong.status, 2);
+    assert!(wrong.error.contains("feedback"), "{}", wrong.error);
+}
+
+#[test]
+fn the_report_has_a_section_on_couplings() {
+    let desk = Desk::new();
+    desk.gdcm(&[&["report", "--out", "r.html"], &COUPLED[..]].concat()).assert_done();
+    let page = fs::read_to_string(desk.path("r.html")).unwrap();
+    for words in [
+        "Couplings</h",
+        "swashplate phase of 2.",
+        "Feedback: units of an input",
+        "Poles of the physics representatives",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+}

@@ -87,7 +87,11 @@ fn couplings_section(analysis: &Analysis) -> String {
     if let Some(assessment) = &analysis.coupling_assessment {
         text.push_str(&labelled(0, "Couplings", LABEL, &sanitized(&assessment.heading())));
         text.push_str(&indented(&assessment.cost_table(), 2));
-        assessment.matrix_tables(&analysis.study.dataset).iter().for_each(|table| text.push_str(&indented(table, 2)));
+        for mut table in assessment.matrix_tables(&analysis.study.dataset) {
+            let names = table.rows.iter_mut().filter_map(|row| row.first_mut());
+            names.chain(&mut table.columns).for_each(|name| *name = sanitized(name));
+            text.push_str(&indented(&table, 2));
+        }
     }
     for remark in &said {
         let label = match remark.kind {

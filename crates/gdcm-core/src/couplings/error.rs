@@ -2,7 +2,7 @@
 
 use crate::dataset::ConditionId;
 use crate::progress::Cancelled;
-use crate::units::number;
+use crate::units::{number, telling};
 
 /// Why no couplings can be found (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -62,7 +62,7 @@ pub enum CouplingError {
     /// The mixing takes an input away or turns it around.
     #[error(
         "the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
-        number(*factor),
+        telling(*factor, 3),
         number(*airspeed_kt)
     )]
     ReversedInput {
@@ -76,4 +76,29 @@ pub enum CouplingError {
     /// The work was stopped.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl CouplingError {
+    /// Why, in words that name the input.
+    pub fn words(&self, inputs: &[String]) -> String {
+        match self {
+            Self::ReversedInput { input, .. } => {
+                let name = inputs.get(input - 1).map_or("", String::as_str);
+                self.to_string().replace(&format!("input {input}"), &format!("input {name}"))
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_input_that_is_turned_around_is_named() {
+        let error = CouplingError::ReversedInput { input: 2, airspeed_kt: 40.0, factor: -0.598_742_4 };
+        let words = error.words(&["LON".to_owned(), "LAT".to_owned()]);
+        assert!(words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"), "{words}");
+    }
 }

@@ -66,7 +66,10 @@ impl Analysis {
     /// What has to be said of the couplings: why there are none, or what they mean, are worth and cost, as far as that was asked for.
     pub fn coupling_remarks(&self) -> Vec<Remark> {
         match (&self.couplings, &self.coupling_assessment) {
-            (Some(Err(error)), _) => vec![Remark::new(RemarkKind::Trouble, format!("No couplings: {error}."))],
+            (Some(Err(error)), _) => {
+                let words = error.words(&self.study.dataset.names_of_channels().0);
+                vec![Remark::new(RemarkKind::Trouble, format!("No couplings: {words}."))]
+            }
             (Some(Ok(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
             _ => Vec::new(),
         }

@@ -92,6 +92,8 @@ pub struct CouplingsAssessment {
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
     /// Poles that are newly unstable, of every kept physics model.
     pub unstable: Vec<UnstablePole>,
+    /// Number of conditions all of whose held responses want lead that no channel gives: a feedback then takes its place.
+    pub want_leads: usize,
 }
 
 impl CouplingsAssessment {
@@ -216,6 +218,7 @@ impl Engine {
             omega: grid.omega().into(),
             conditions: BTreeMap::new(),
             unstable: Vec::new(),
+            want_leads: without.conditions.values().flatten().filter(|result| result.offer.is_some()).count(),
             left_out_fits: Vec::new(),
         };
         let results: Vec<&ConditionAnalysis> =

@@ -86,6 +86,19 @@ fn poles_margins_and_what_happens_above_the_band_are_of_every_condition() {
 }
 
 #[test]
+fn without_leads_a_feedback_is_said_to_take_their_place() {
+    assert_eq!(ASSESSED.want_leads, 0, "leads are given");
+    let mut study = EXAMPLE.analysis.study.clone();
+    study.apply(&setting::PHASE.to(PhaseCorrection::Delay)).unwrap();
+    let assess = |couplings| engine().assess_couplings(&study, couplings, &Unobserved).unwrap().unwrap().unwrap();
+    let says = |of: &CouplingsAssessment| {
+        of.cautions(&EXAMPLE.dataset).iter().any(|of| of.text.ends_with("Correct the phase by leads first."))
+    };
+    assert!(says(&assess(CouplingCorrection::MixingAndFeedback)) && !says(&ASSESSED));
+    assert!(!says(&assess(CouplingCorrection::Mixing)), "a mixing gives no lead");
+}
+
+#[test]
 fn mixing_alone_moves_no_pole_and_no_couplings_are_not_assessed() {
     let study = EXAMPLE.analysis.study.clone();
     let run = |couplings| CouplingsJob { study: study.clone(), couplings }.run(&mut engine(), &Unobserved).unwrap();

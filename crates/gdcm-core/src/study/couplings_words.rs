@@ -8,7 +8,7 @@ use crate::couplings::{
 use crate::dataset::{Channel, ConditionId, Dataset, Pair};
 use crate::units::{number, signed, telling};
 
-use super::{CouplingCost, CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
+use super::{CouplingCorrection, CouplingCost, CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
 
 /// Entries told of each matrix, the largest.
 const TOLD: usize = 3;
@@ -121,6 +121,14 @@ impl CouplingsAssessment {
         let caution = |text: String| Remark::new(RemarkKind::Caution, text);
         let mut remarks: Vec<Remark> = self.unstable_words();
         remarks.extend(self.ringing_words().map(caution));
+        if self.want_leads > 0 && self.couplings == CouplingCorrection::MixingAndFeedback {
+            remarks.push(caution(format!(
+                "In {} {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
+                 poles far from where they were. Correct the phase by leads first.",
+                self.want_leads,
+                if self.want_leads == 1 { "condition" } else { "conditions" }
+            )));
+        }
         let conditions = self.fitted.problem.conditions.len();
         if conditions < LEAST_CONDITIONS {
             remarks.push(caution(format!(
@@ -205,10 +213,12 @@ fn mixing_words(dataset: &Dataset, of: &MixingShare) -> String {
     let share = if to.unit == from.unit {
         format!("{} % of {}", percent(of.share), from.name)
     } else {
-        format!("{} {} per {} of {}", number(of.share), to.unit, from.unit, from.name)
+        format!("{} {} per {} of {}", telling(of.share, 3).replace('-', "−"), to.unit, from.unit, from.name)
     };
     let phase = of.swashplate_phase_deg.filter(|_| to.unit == from.unit);
-    let phase = phase.map_or_else(String::new, |phase| format!(": as a swashplate phase of {}°", telling(phase, 1)));
+    let phase = phase.map_or_else(String::new, |phase| {
+        format!(": as a swashplate phase of {}°", telling(phase, 1).replace('-', "−"))
+    });
     format!("{} takes {share}{phase}.", to.name)
 }
 
@@ -226,7 +236,7 @@ fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
         "{} follows {} by {} {} per {}, up to {} % of {} at {} rad/s: {meaning} that the physics model does not have right.",
         input.name,
         output.name,
-        telling(of.entry, 3),
+        telling(of.entry, 3).replace('-', "−"),
         input.unit,
         output.unit,
         percent(of.share),
@@ -236,7 +246,7 @@ fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
 }
 
 fn percent(share: f64) -> String {
-    telling(100.0 * share, 1)
+    telling(100.0 * share, 1).replace('-', "−")
 }
 
 /// "−0.30 ± 1.20j rad/s".

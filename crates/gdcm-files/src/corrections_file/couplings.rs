@@ -11,7 +11,7 @@ use super::corrections::{rows_of, without_empty};
 pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
-        Some(Err(error)) => return json!({"why": error.to_string()}),
+        Some(Err(error)) => return json!({"why": error.words(&analysis.study.dataset.names_of_channels().0)}),
         Some(Ok(fitted)) => fitted,
     };
     let feedback = fitted.matrices().feedback();

@@ -29,6 +29,7 @@ mod required_bandwidth;
 mod required_modes;
 mod requirements;
 mod requirements_tables;
+mod role_model;
 pub mod setting;
 mod setting_row;
 mod settings;
@@ -37,6 +38,10 @@ mod sign;
 mod study;
 mod substitutions;
 mod table;
+mod time_histories;
+#[cfg(test)]
+mod time_histories_tests;
+mod time_history_tables;
 mod uncertainty;
 
 pub use crate::progress::{Cancelled, Progress, Unobserved};
@@ -67,6 +72,7 @@ pub use required_bandwidth::*;
 pub use required_modes::*;
 pub use requirements::*;
 pub use requirements_tables::*;
+pub use role_model::*;
 pub use setting::SETTINGS;
 pub use setting_row::*;
 pub use settings::*;
@@ -74,6 +80,7 @@ pub use sign::*;
 pub use study::*;
 pub use substitutions::*;
 pub use table::*;
+pub use time_histories::*;
 pub use uncertainty::*;
 
 #[cfg(test)]

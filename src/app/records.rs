@@ -395,14 +395,7 @@ fn of_entries(channels: &RecordChannels, id: ConditionId, entries: &[ConditionRe
             match table {
                 Ok(table) => {
                     let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
-                    let mut row = row_of(table, channels);
-                    if !entry.remedies.is_empty() {
-                        let mut layout = row.layout.clone();
-                        layout.put_right(&entry.remedies, channels);
-                        row = row.laid_out(layout, channels);
-                    }
-                    (row.used, row.guess.kind, row.guess.held_out) = (entry.used, entry.kind, entry.held_out);
-                    found.rows.entry(id).or_default().push(row);
+                    found.rows.entry(id).or_default().push(row_of(table, channels).as_said(entry, channels));
                 }
                 Err(error) => found.faults.push(error.to_string()),
             }

@@ -38,7 +38,7 @@ impl Job for ReportJob {
     type Output = Result<(), FileError>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let report = report(&self.analysis, &self.source, engine, progress)?;
+        let report = report((&self.analysis, None), &self.source, engine, progress)?;
         // Whoever stopped it does not want a file any more.
         if progress.cancelled() {
             return Err(Cancelled);

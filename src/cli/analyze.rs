@@ -6,6 +6,7 @@ use gdcm_files::{ReportSource, make_directory, report as report_of, result_paths
 use super::summary::summary;
 use super::{
     AnalyzeArguments, Failure, ReportArguments, TerminalProgress, analysis_of, leave_one_out_section, say, study_of,
+    time_histories,
 };
 
 /// Analyses, writes the results, and prints a summary.
@@ -23,6 +24,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
 /// Analyses, and writes all that was found and done as one page.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
+    let outputs = outputs.also_reading(arguments.histories.files());
     outputs.check(&[&arguments.out])?;
     let ending = arguments.out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
@@ -30,11 +32,16 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         let reason = format!("expected a name that ends in .html, found {found}; a browser prints the report as PDF");
         return Err(Failure::Option { option: "--out", reason });
     }
+    let (tolerances, records) = (arguments.histories.tolerance_table()?, arguments.histories.read(&study.dataset)?);
     let (analysis, mut engine) = analysis_of(study, &arguments.study, false)?;
+    let histories = match arguments.histories.records.as_slice() {
+        [] => None,
+        _ => Some(time_histories(&analysis, &records, &tolerances)?),
+    };
     let study_file = arguments.study.file.as_deref().filter(|file| loaded.path() != Some(file));
     let source = ReportSource::of(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
-    let report = report_of(&analysis, &source, &mut engine, &progress)?;
+    let report = report_of((&analysis, histories.as_ref()), &source, &mut engine, &progress)?;
     drop(progress);
     save_report(&report, &arguments.out, outputs)?;
     let solved = analysis.conditions.values().filter(|outcome| outcome.is_ok()).count();

@@ -10,7 +10,7 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
-use super::{ExportArguments, IdentifyArguments};
+use super::{ExportArguments, HistoryArguments, IdentifyArguments};
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
@@ -49,10 +49,11 @@ pub enum Command {
         after_help = "Examples:\n  gdcm report flight.gdcm-study.json --out report.html\n  gdcm report example-dataset.json --reject-suggested --out report.html --force"
     )]
     Report(Box<ReportArguments>),
-    /// Ask the models of every condition what a qualification asks: bandwidth and phase delay, summary costs, modes; write
-    /// requirements.json and requirements.csv, and print a short table. This is no qualification.
+    /// Ask the models of every condition what a qualification asks: bandwidth and phase delay, time histories within tolerances about
+    /// flight records, summary costs, modes; write requirements.json and requirements.csv, and print a short table. This is no
+    /// qualification.
     #[command(
-        after_help = "Examples:\n  gdcm requirements example-dataset.json --reject-suggested --out requirements\n  gdcm requirements flight.gdcm-study.json --phase lead --out requirements --force"
+        after_help = "Examples:\n  gdcm requirements example-dataset.json --reject-suggested --out requirements\n  gdcm requirements flight.gdcm-study.json --records sweeps --tolerances mine.json --out requirements --force"
     )]
     Requirements(Box<RequirementsArguments>),
     /// Write corrections for other tools: MATLAB, Python, C, lookup tables, corrected models as state-space.
@@ -332,6 +333,9 @@ pub struct ReportArguments {
     /// What is to be analysed, and how.
     #[command(flatten)]
     pub study: StudyArguments,
+    /// What models are compared with in time.
+    #[command(flatten)]
+    pub histories: HistoryArguments,
     /// The file: HTML that needs no other file.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
@@ -346,9 +350,15 @@ pub struct RequirementsArguments {
     /// What is to be analysed, and how.
     #[command(flatten)]
     pub study: StudyArguments,
+    /// What models are compared with in time.
+    #[command(flatten)]
+    pub histories: HistoryArguments,
+    /// Write the table of tolerances, the default or that of --tolerances, as a file to edit; without --out, nothing else is done.
+    #[arg(long, value_name = "FILE")]
+    pub write_tolerances: Option<PathBuf>,
     /// Directory for requirements.json and requirements.csv; made where there is none.
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "write_tolerances")]
+    pub out: Option<PathBuf>,
     /// Overwrite files that are there already.
     #[arg(long)]
     pub force: bool,

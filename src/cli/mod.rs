@@ -9,6 +9,7 @@ mod destination;
 mod export;
 mod failure;
 mod figure;
+mod history_records;
 mod identify;
 mod identify_arguments;
 mod models;
@@ -35,6 +36,7 @@ use crate::executor::start_threads;
 use arguments::{Arguments, real_number, whole_number};
 use destination::{Destination, Group, said_conditions};
 use failure::{Failure, listed_paths};
+use history_records::time_histories;
 use models::{ReadingProgress, counted};
 use read_record::{ReadRecords, hold_out, is_called, laid_out, record_table};
 use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
@@ -47,6 +49,7 @@ pub use arguments::{
     PairList, Rejection, ReportArguments, RequirementsArguments, SaidSign, StudyArguments,
 };
 pub use export::{Breakpoints, ExportArguments};
+pub use history_records::HistoryArguments;
 pub use identify_arguments::{
     ChannelConversion, ChannelDelay, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart, of_one_record,
 };

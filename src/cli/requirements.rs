@@ -1,46 +1,83 @@
 //! `gdcm requirements`: what a qualification asks of the models of every condition, written as files, with a short table.
 
+use std::path::Path;
+
 use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::requirements::ModeVerdict;
+use gdcm_core::requirements::{ModeVerdict, ToleranceTable};
 use gdcm_core::study::{
-    Analysis, BandwidthFinding, Execution, RequirementRole, Requirements, SummaryFinding, Table, requirements_of,
+    Analysis, BandwidthFinding, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table, TimeHistories,
 };
 use gdcm_core::units::s_to_ms;
-use gdcm_files::{REQUIREMENT_FILES, make_directory, requirement_paths, write_requirements};
+use gdcm_files::{OutputSet, REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
 
 use super::{
-    Failure, LABEL, RequirementsArguments, TerminalProgress, analysis_of, by_words, caution_of, indented, labelled,
-    note, say, study_of,
+    Failure, LABEL, RequirementsArguments, TerminalProgress, analysis_of, by_words, caution_of, counted, existing,
+    indented, labelled, listed_conditions, note, say, study_of, time_histories,
 };
-use crate::executor::Pool;
 
-/// Analyses, writes the requirements, and prints a short table.
+/// Writes the table of tolerances where that is asked for; analyses, writes the requirements, and prints a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
+    let histories = &arguments.histories;
+    let tolerances = histories.tolerance_table()?;
+    let written = match &arguments.write_tolerances {
+        Some(path) => write_tolerances(&tolerances, path, arguments)?,
+        None => String::new(),
+    };
+    let Some(out) = &arguments.out else { return say(&written) };
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
-    outputs.check(&requirement_paths(&arguments.out))?;
-    make_directory(&arguments.out)?;
-    let (analysis, _) = analysis_of(study, &arguments.study, true)?;
-    let progress = TerminalProgress::new("reading bandwidths");
-    let requirements = requirements_of(&analysis, &Execution::new(&Pool, &progress, analysis.conditions.len()))?;
-    drop(progress);
+    let outputs = outputs.also_reading(histories.files());
+    outputs.check(&requirement_paths(out))?;
+    make_directory(out)?;
+    let records = histories.read(&study.dataset)?;
+    let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
+    let requirements = engine.requirements(&analysis, &TerminalProgress::new("reading bandwidths"))?;
+    let histories = time_histories(&analysis, &records, &tolerances)?;
     let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
-    write_requirements(&requirements, dataset, &arguments.out, outputs)?;
-    for caution in by_words(requirements.cautions.iter().map(|of| (of.condition, of.text.clone()))) {
-        caution_of(&caution.0, &caution.1);
-    }
-    // Conditions without a result have been told already.
-    let missing = requirements.missing.iter().filter(|of| of.what != "all");
-    missing.for_each(|of| {
-        let condition = of.condition.map_or_else(String::new, |id| format!("condition {id}: "));
-        note(&format!("{condition}no {}: {}", of.what, of.why));
-    });
-    let written = format!("{} in {}", REQUIREMENT_FILES.join(", "), sanitized_path(&arguments.out));
+    write_requirements((&requirements, &histories), dataset, out, outputs)?;
+    tell_cautions(&requirements, &histories);
+    let files = format!("{} in {}", REQUIREMENT_FILES.join(", "), sanitized_path(out));
     let text = bandwidth_section(&analysis, &requirements)
         + &summary_section(&requirements)
         + &mode_section(&requirements)
+        + &history_section(&histories)
         + &labelled(0, "", LABEL, "these numbers are no qualification")
-        + &labelled(0, "Written", LABEL, &written);
-    say(&text)
+        + &labelled(0, "Written", LABEL, &files);
+    say(&(text + &written))
+}
+
+/// Writes the table of tolerances, and gives the line that says so.
+fn write_tolerances(
+    tolerances: &ToleranceTable,
+    path: &Path,
+    arguments: &RequirementsArguments,
+) -> Result<String, Failure> {
+    let inputs = arguments.study.file.iter().cloned().chain(arguments.histories.files()).collect();
+    let mut outputs = OutputSet::new(existing(arguments.force), inputs);
+    add_tolerances(tolerances, path, &mut outputs)?;
+    outputs.persist()?;
+    Ok(labelled(
+        0,
+        "Tolerances",
+        LABEL,
+        &format!("{} in {}", counted(tolerances.rows().len(), "row"), sanitized_path(path)),
+    ))
+}
+
+/// What has to be known, and what is missing; that there are no records at all is no surprise to who gave none.
+fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
+    for caution in by_words(requirements.cautions.iter().map(|of| (of.condition, of.text.clone()))) {
+        caution_of(&caution.0, &caution.1);
+    }
+    let of_records = histories.missing.iter().filter(|_| !histories.records.is_empty());
+    // Conditions without a result have been told already.
+    let missing = requirements.missing.iter().filter(|of| of.what != "all").chain(of_records);
+    let (of_conditions, of_all): (Vec<&MissingFinding>, Vec<_>) = missing.partition(|of| of.condition.is_some());
+    of_all.iter().for_each(|of| note(&format!("no {}: {}", of.what, of.why)));
+    let of_conditions =
+        of_conditions.iter().filter_map(|of| Some((of.condition?, format!("no {}: {}", of.what, of.why))));
+    for (conditions, words) in by_words(of_conditions) {
+        note(&format!("{}: {words}", listed_conditions(&conditions)));
+    }
 }
 
 /// A number, or a dash.
@@ -62,33 +99,37 @@ fn both_numbers(finding: &BandwidthFinding) -> String {
 
 /// Bandwidth and phase delay of every response that has one of them, role by role; of the others the reason, once.
 fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String {
-    let headings = ["condition", "response"].into_iter().chain(RequirementRole::ALL.map(RequirementRole::name));
-    let mut table = Table::new("", headings);
-    let (mut reasons, mut is_marked) = (Vec::new(), false);
     let same_response = |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
-    for findings in requirements.bandwidth.chunk_by(same_response) {
-        let name = analysis.study.dataset.pair_name(findings[0].pair);
-        if findings.iter().all(|of| of.omega_bw_rad_s.is_none() && of.phase_delay_s.is_none()) {
-            let why = findings[0].absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
-            reasons.push((findings[0].condition, format!("{name}: {why}")));
-            continue;
-        }
-        let numbers = |role| findings.iter().find(|of| of.role == role).map_or_else(|| "-".to_owned(), both_numbers);
-        let cells = [findings[0].condition.to_string(), sanitized(&name)];
-        let cells: Vec<String> = cells.into_iter().chain(RequirementRole::ALL.map(numbers)).collect();
-        is_marked |= cells.iter().any(|cell| cell.contains('*'));
-        table.row(cells);
-    }
+    let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+    let (known, unknown): (Vec<&[BandwidthFinding]>, Vec<_>) =
+        requirements.bandwidth.chunk_by(same_response).partition(|of| of.iter().any(has_number));
+    let name = |of: &[BandwidthFinding]| analysis.study.dataset.pair_name(of[0].pair);
+    let table = bandwidth_table(known.into_iter().map(|of| (name(of), of)));
+    let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
     let star = if is_marked { "; * rests on the response above the band" } else { "" };
     let mut text = labelled(0, "Bandwidth", LABEL, &format!("of the attitude [rad/s] / phase delay [ms]{star}:"));
     if !table.rows.is_empty() {
         text.push_str(&indented(&table, 2));
     }
+    let why = |of: &[BandwidthFinding]| of[0].absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
+    let reasons = unknown.into_iter().map(|of| (of[0].condition, format!("{}: {}", name(of), why(of))));
     for (conditions, words) in by_words(reasons) {
-        let words = format!("{}: {words}", super::listed_conditions(&conditions));
+        let words = format!("{}: {words}", listed_conditions(&conditions));
         text.push_str(&labelled(0, "No bandwidth", LABEL, &sanitized(&words)));
     }
     text
+}
+
+/// A row for each response, with its name and the numbers of each role.
+fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFinding])>) -> Table {
+    let headings = ["condition", "response"].into_iter().chain(RequirementRole::ALL.map(RequirementRole::name));
+    let mut table = Table::new("", headings);
+    for (name, findings) in responses {
+        let numbers = |role| findings.iter().find(|of| of.role == role).map_or_else(|| "-".to_owned(), both_numbers);
+        let cells = [findings[0].condition.to_string(), sanitized(&name)];
+        table.row(cells.into_iter().chain(RequirementRole::ALL.map(numbers)));
+    }
+    table
 }
 
 /// Mean J and share of the band inside the envelopes, on-axis, role by role.
@@ -122,4 +163,31 @@ fn mode_section(requirements: &Requirements) -> String {
         count(ModeVerdict::NotPaired)
     );
     labelled(0, "Modes", LABEL, &words)
+}
+
+/// Share of time inside the tolerances where a model is outside, condition by condition; and the rms errors.
+fn history_section(histories: &TimeHistories) -> String {
+    const HEADING: &str = "Time history";
+    if histories.records.is_empty() {
+        let why = histories.missing.first().map_or("no record was compared", |of| of.why.as_str());
+        return labelled(0, HEADING, LABEL, &sanitized(why));
+    }
+    let mut table = histories.share_table();
+    let all = table.rows.len();
+    table.rows.retain(|row| row[3..].iter().any(|share| !matches!(share.as_str(), "100.0" | "-")));
+    table.rows.iter_mut().for_each(|row| row[2] = sanitized(&row[2]));
+    let source = match histories.tolerance_table.source() {
+        "" => String::new(),
+        source => format!(" of {}", sanitized(source)),
+    };
+    let words = format!(
+        "share of time inside the tolerances{source}, over all records of a condition; attitudes are integrals of rates; {} of {all} \
+         rows, in which every model is always inside, are left out:",
+        all - table.rows.len()
+    );
+    let rms = histories.rms_table();
+    labelled(0, HEADING, LABEL, &words)
+        + &indented(&Table { title: String::new(), ..table }, 2)
+        + &labelled(0, "", LABEL, "rms error J_rms [deg, deg/s, ft/s, ft/s^2], over all records of a condition:")
+        + &indented(&Table { title: String::new(), ..rms }, 2)
 }

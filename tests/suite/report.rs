@@ -2,12 +2,17 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::sync::LazyLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
 
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
-use gdcm_core::study::{Analysis, Cancelled, Edit, Engine, Progress, Study, Unobserved};
-use gdcm_files::{ReportSource, load_dataset, report, save_study};
+use gdcm_core::identification::Preparation;
+use gdcm_core::records::{LaidOutRecord, RecordChannels, TimeWish};
+use gdcm_core::requirements::ToleranceTable;
+use gdcm_core::study::{
+    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, Progress, Study, Unobserved, time_histories_of,
+};
+use gdcm_files::{ReportSource, example_records, load_dataset, report, save_study};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 
@@ -15,7 +20,7 @@ use crate::EXAMPLE;
 use crate::commands::Desk;
 use crate::window::{click, settle, state, window};
 
-const SECTIONS: [&str; 10] = [
+const SECTIONS: [&str; 11] = [
     "1 Summary",
     "2 Settings",
     "3 Provenance",
@@ -24,8 +29,9 @@ const SECTIONS: [&str; 10] = [
     "6 Channels and schedule",
     "7 Uncertainty",
     "8 Assessment",
-    "9 The method",
-    "10 Sources of the models",
+    "9 Requirements",
+    "10 The method",
+    "11 Sources of the models",
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
@@ -40,7 +46,7 @@ static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
 static REPORT: LazyLock<String> = LazyLock::new(example_report);
 
 fn example_report() -> String {
-    report(&ANALYSIS, &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
+    report((&ANALYSIS, None), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
 }
 
 /// The page as XML; its document type is HTML's, which names no other file.
@@ -78,6 +84,39 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
     ] {
         assert!(figures.iter().any(|caption| caption.contains(words)), "{words} in {figures:?}");
     }
+}
+
+#[test]
+fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_are_records() {
+    let engine = &mut Engine::default();
+    let uncertainty = Some(Arc::new(engine.uncertainty(&ANALYSIS, &Unobserved).unwrap()));
+    let analysis = Analysis { uncertainty, ..ANALYSIS.clone() };
+    let requirements = engine.requirements(&analysis, &Unobserved).unwrap();
+    let cells = texts(&parsed(&REPORT), "td");
+    for row in requirements.summary_table().rows {
+        assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
+    }
+    let known = requirements.bandwidth.iter().find(|of| of.omega_bw_rad_s.is_some()).unwrap();
+    let bandwidth = format!("{:.2}", known.omega_bw_rad_s.unwrap());
+    assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
+    assert!(!REPORT.contains("Share of time"), "no record was given");
+
+    let channels = RecordChannels::of_dataset(&EXAMPLE.dataset);
+    let tables = example_records(3).unwrap().into_iter().take(1);
+    let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
+    let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
+    let (inputs, outputs) = EXAMPLE.dataset.names_of_channels();
+    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let records = [HistoryRecords::of(ConditionId(3), &records, Preparation::of(&inputs, &outputs))];
+    let table = ToleranceTable::default();
+    let histories = time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
+    let source = ReportSource::of(&EXAMPLE, None);
+    let report = report((&analysis, Some(&histories)), &source, engine, &Unobserved).unwrap();
+    let cells = texts(&parsed(&report), "td");
+    for row in histories.share_table().rows.into_iter().chain(histories.rms_table().rows) {
+        assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
+    }
+    assert!(report.contains("Conditions 1, 2, 4, 5, 6, 7, 8, 9, 10, 11: no flight record of it was given."));
 }
 
 #[test]
@@ -146,7 +185,7 @@ impl Progress for Impatient {
 fn a_report_that_is_not_wanted_any_more_is_given_up() {
     let impatient = Impatient(AtomicUsize::new(2));
     let source = ReportSource::of(&EXAMPLE, None);
-    assert_eq!(report(&ANALYSIS, &source, &mut Engine::default(), &impatient), Err(Cancelled));
+    assert_eq!(report((&ANALYSIS, None), &source, &mut Engine::default(), &impatient), Err(Cancelled));
 }
 
 /// The small dataset with names that are markup, and a condition that has no result.
@@ -245,6 +284,7 @@ fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
     settle(&mut window);
     let written = fs::read_to_string(&path).unwrap();
     let analysis = state(&window).results.analysis.clone().unwrap();
-    let expected = report(&analysis, &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap();
+    let expected =
+        report((&analysis, None), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap();
     assert!(written == expected, "what the command would write");
 }

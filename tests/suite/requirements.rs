@@ -73,6 +73,8 @@ fn the_json_and_the_csv_of_requirements_say_the_same() {
         let interval = found["interval"].get(quantity).map(|ends| [ends[0].as_f64(), ends[1].as_f64()]);
         assert_eq!(interval.unwrap_or_default(), [row["low"].parse().ok(), row["high"].parse().ok()], "{row:?}");
     }
+    assert_eq!(entries(&written["time_histories"]["records"]).len(), 0);
+    assert_eq!(written["time_histories"]["missing"][0]["why"], "no flight record was given");
     for question in ["bandwidth", "modes", "summary"] {
         assert!(table.iter().any(|row| row["question"] == question), "{question}");
     }
@@ -113,4 +115,75 @@ fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let roles: Vec<&str> = refused.map(|(role, _)| role).collect();
     assert!(roles.contains(&"corrected"), "{roles:?}");
     assert!(!roles.contains(&"physics") && !roles.contains(&"identified"), "{roles:?}");
+}
+
+const RECORDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/example-records-3-and-10.zip");
+
+#[test]
+fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["requirements", "--records", RECORDS, "--out", ".", "--phase", "lead"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let without = "note: conditions 1, 2, 4, 5, 6, 7, 8, 9, 11: no time histories: no flight record of it was given";
+    assert!(ended.error.contains(without), "{}", ended.error);
+    assert!(ended.out.contains("share of time inside the tolerances of 14 CFR part 60"), "{}", ended.out);
+    let written = crate::read_json(&desk.path("requirements.json"));
+    let histories = &written["time_histories"];
+    let records = entries(&histories["records"]);
+    // Nine records each of conditions 3 and 10, four models.
+    assert_eq!(records.len(), 72);
+    assert!(records.iter().any(|of| of["held_out"] == true && of["record"] == "cond03_validation"));
+    let squares = |role: &str| -> f64 {
+        let of_role = records.iter().filter(|of| of["condition"] == 3 && of["role"] == role);
+        of_role.map(|of| of["j_rms"].as_f64().unwrap().powi(2)).sum()
+    };
+    let [physics, corrected, identified] = ["physics", "corrected", "identified"].map(squares);
+    assert!(identified < corrected && corrected < physics, "{identified} {corrected} {physics}");
+    let sweep = records.iter().find(|of| of["record"] == "cond03_sweep_LON_1" && of["role"] == "physics").unwrap();
+    assert_eq!(sweep["moved_input"], "LON");
+    let pitch = entries(&sweep["tolerances"]).iter().find(|of| of["quantity"] == "pitch rate").unwrap();
+    assert!(pitch["on_axis"] == true && pitch["trend"].is_null() && pitch["correlation"].as_f64().unwrap() > 0.9);
+
+    let table = rows(&desk.path("requirements.csv"));
+    let of_histories: Vec<_> = table.iter().filter(|row| row["question"] == "time_histories").collect();
+    assert!(of_histories.len() > 72 * 40);
+    for row in of_histories {
+        let is_meant = |of: &&Value| of["record"] == row["record"] && of["role"] == row["role"];
+        let finding = records.iter().find(is_meant).unwrap();
+        let against = |of: &&Value| of["quantity"] == row["tolerance"];
+        let number = match (row["tolerance"].as_str(), row["quantity"].as_str()) {
+            ("", "theil") => &finding["theil"][&row["output"]],
+            ("", quantity) => &finding[quantity],
+            (_, quantity) => &entries(&finding["tolerances"]).iter().find(against).unwrap()[quantity],
+        };
+        assert_eq!(number.as_f64(), row["value"].parse().ok(), "{row:?}");
+    }
+}
+
+#[test]
+fn a_table_of_tolerances_is_written_edited_and_used() {
+    let desk = Desk::new();
+    desk.gdcm(&["requirements", "--write-tolerances", "mine.json"]).assert_done();
+    let mut table = crate::read_json(&desk.path("mine.json"));
+    assert_eq!(entries(&table["tolerances"]).len(), 9);
+    let write = |table: &Value| std::fs::write(desk.path("mine.json"), serde_json::to_vec(table).unwrap()).unwrap();
+    table["source"] = json!("ours");
+    table["tolerances"].as_array_mut().unwrap().truncate(2);
+    table["tolerances"][1]["channel"] = json!("PHI");
+    write(&table);
+    let ended = desk.gdcm(&["requirements", "small.json", "--tolerances", "mine.json", "--out", "."]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let written = crate::read_json(&desk.path("requirements.json"));
+    let histories = &written["time_histories"];
+    assert_eq!(histories["tolerance_table"]["source"], "ours");
+    let said: Vec<&str> = entries(&histories["missing"]).iter().map(|of| of["why"].as_str().unwrap()).collect();
+    assert_eq!(said, ["no flight record was given", "\"bank angle\" is not compared: there is no output \"PHI\""]);
+    table["tolerances"][0]["absolute"] = json!(-1.0);
+    write(&table);
+    let ended = desk.gdcm(&["requirements", "small.json", "--tolerances", "mine.json", "--out", ".", "--force"]);
+    ended.assert_failed(2, &["mine.json", "tolerance 1, \"roll rate\": expected absolute above zero, found -1"]);
+    let onto_itself = ["requirements", "--tolerances", "small.json", "--write-tolerances", "small.json", "--force"];
+    desk.gdcm(&onto_itself).assert_failed(2, &["small.json"]);
+    let ended = desk.gdcm(&["requirements", "small.json", "--records", "nothing.csv", "--out", ".", "--force"]);
+    ended.assert_failed(2, &["nothing.csv"]);
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_core::dataset::{BandError, DraftError, DraftFault, Location};
 use gdcm_core::message_text::{quoted, sanitized, sanitized_path};
+use gdcm_core::requirements::ToleranceError;
 use gdcm_core::study::EditRefusal;
 
 use crate::exports::ExportFault;
@@ -373,6 +374,9 @@ pub enum ContentFault {
         /// What stands there.
         found: String,
     },
+    /// A row of a table of tolerances is wrong.
+    #[error(transparent)]
+    Tolerance(#[from] ToleranceError),
     /// The ends of the band are wrong.
     #[error(transparent)]
     Band(#[from] BandError),

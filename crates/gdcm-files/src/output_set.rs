@@ -58,6 +58,13 @@ impl OutputSet {
         Self { existing, inputs, staged: Vec::new() }
     }
 
+    /// The same set, which replaces none of these either.
+    #[must_use]
+    pub fn also_reading(mut self, inputs: impl IntoIterator<Item = PathBuf>) -> Self {
+        self.inputs.extend(inputs);
+        self
+    }
+
     /// Refuses places that cannot be written to, or may not be: a question for before the work.
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut there = Vec::new();

@@ -7,7 +7,10 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{BandwidthFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding};
+use gdcm_core::study::{
+    BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding, TimeHistories,
+    ToleranceFinding,
+};
 
 use super::csv_table::write_records;
 use super::file_error::FileError;
@@ -33,6 +36,7 @@ struct RequirementsDocument<'a> {
     dataset: DatasetName<'a>,
     #[serde(flatten)]
     requirements: &'a Requirements,
+    time_histories: &'a TimeHistories,
 }
 
 #[derive(Serialize)]
@@ -45,7 +49,7 @@ struct DatasetName<'a> {
 ///
 /// `dataset` is the name of the dataset and the SHA-256 of its file.
 pub fn write_requirements(
-    requirements: &Requirements,
+    (requirements, time_histories): (&Requirements, &TimeHistories),
     (name, sha256): (&str, &str),
     directory: &Path,
     mut outputs: OutputSet,
@@ -59,16 +63,17 @@ pub fn write_requirements(
         software: concat!("gdcm ", env!("CARGO_PKG_VERSION")),
         dataset: DatasetName { name, sha256 },
         requirements,
+        time_histories,
     };
     outputs.add(&json, |file| {
         serde_json::to_writer_pretty(&mut *file, &document)?;
         file.write_all(b"\n")
     })?;
-    outputs.add(&table, |file| write_rows(requirements, file))?;
+    outputs.add(&table, |file| write_rows(requirements, time_histories, file))?;
     outputs.persist()
 }
 
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 14] = [
     "question",
     "condition",
     "airspeed_kt",
@@ -77,6 +82,8 @@ const COLUMNS: [&str; 12] = [
     "output",
     "input",
     "mode",
+    "record",
+    "tolerance",
     "quantity",
     "value",
     "low",
@@ -86,15 +93,17 @@ const COLUMNS: [&str; 12] = [
 const REMARK: &str = "remark";
 
 /// A row for each number.
-fn write_rows(requirements: &Requirements, file: &mut dyn Write) -> io::Result<()> {
+fn write_rows(requirements: &Requirements, time_histories: &TimeHistories, file: &mut dyn Write) -> io::Result<()> {
     let heading: Vec<String> = COLUMNS.into_iter().chain([REMARK]).map(str::to_owned).collect();
     let bandwidth = requirements.bandwidth.iter().flat_map(bandwidth_rows);
     let modes = requirements.modes.iter().flat_map(mode_rows);
     let summary = requirements.summary.iter().flat_map(summary_rows);
-    write_records(file, std::iter::once(heading).chain(bandwidth).chain(modes).chain(summary))
+    let histories = time_histories.records.iter().flat_map(history_rows);
+    write_records(file, std::iter::once(heading).chain(bandwidth).chain(modes).chain(summary).chain(histories))
 }
 
-/// What a number is of: the first eight cells of a row.
+/// What a number is of: the first ten cells of a row.
+#[derive(Clone, Copy)]
 struct Subject<'a> {
     question: &'a str,
     condition: ConditionId,
@@ -103,7 +112,9 @@ struct Subject<'a> {
     model: &'a str,
     output: &'a str,
     input: &'a str,
-    mode: String,
+    mode: &'a str,
+    record: &'a str,
+    tolerance: &'a str,
 }
 
 impl Subject<'_> {
@@ -117,7 +128,9 @@ impl Subject<'_> {
             self.model.to_owned(),
             self.output.to_owned(),
             self.input.to_owned(),
-            self.mode.clone(),
+            self.mode.to_owned(),
+            self.record.to_owned(),
+            self.tolerance.to_owned(),
             name.to_owned(),
             cell(value),
             cell(interval.map(|[low, _]| low)),
@@ -136,7 +149,9 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
         model: &finding.model,
         output: &finding.output,
         input: &finding.input,
-        mode: String::new(),
+        mode: "",
+        record: "",
+        tolerance: "",
     };
     let row = |(name, value)| {
         let interval = finding.interval.get(name).copied();
@@ -171,6 +186,7 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
 
 fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
     let name = finding.name.map_or_else(String::new, |name| format!(" {name}"));
+    let mode = format!("{}{name}", finding.number);
     let rows = |role: &str, numbers: &ModeNumbers| -> Vec<Vec<String>> {
         let subject = Subject {
             question: "modes",
@@ -180,7 +196,9 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
             model: &numbers.model,
             output: "",
             input: "",
-            mode: format!("{}{name}", finding.number),
+            mode: &mode,
+            record: "",
+            tolerance: "",
         };
         let why = |name: &str| numbers.absent.get(name).copied().unwrap_or_default().to_owned();
         numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
@@ -198,9 +216,49 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
         model: &finding.model,
         output: "",
         input: "",
-        mode: String::new(),
+        mode: "",
+        record: "",
+        tolerance: "",
     };
     let absent: &BTreeMap<&'static str, String> = &finding.absent;
     let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
     finding.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
+}
+
+/// What has no tolerance first, then each tolerance.
+fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
+    let subject = Subject {
+        question: "time_histories",
+        condition: finding.condition,
+        airspeed_kt: finding.airspeed_kt,
+        role: finding.role.name(),
+        model: &finding.model,
+        output: "",
+        input: finding.moved_input.as_deref().unwrap_or_default(),
+        mode: "",
+        record: &finding.record,
+        tolerance: "",
+    };
+    let why = if finding.j_rms.is_none() { "no output is an angle, a rate, a speed or an acceleration" } else { "" };
+    let rms = subject.row("j_rms", finding.j_rms, None, why.to_owned());
+    let theil = finding
+        .theil
+        .iter()
+        .map(|(output, theil)| Subject { output, ..subject }.row("theil", Some(*theil), None, String::new()));
+    let against = finding.tolerances.iter().flat_map(|of| {
+        let subject = Subject { output: &of.output, tolerance: &of.quantity, ..subject };
+        let row = |(name, value): (&str, Option<f64>)| subject.row(name, value, None, tolerance_remark(of, name));
+        of.quantities().map(row)
+    });
+    std::iter::once(rms).chain(theil).chain(against).collect()
+}
+
+/// The unit of an excess, and the trend that a correlation says.
+fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
+    match (name, finding.correlation, finding.trend) {
+        ("largest_excess", ..) => finding.unit.clone(),
+        ("correlation", None, _) => "flown or simulated does not move".to_owned(),
+        ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
+        _ => String::new(),
+    }
 }

@@ -105,6 +105,20 @@ impl LaidOutRecord {
         Self { used: self.used, ..Self::new(Arc::clone(&self.table), layout, self.guess.clone(), channels) }
     }
 
+    /// The record as a dataset says of it: with its remedies, held out or not, used or not.
+    #[must_use]
+    pub fn as_said(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
+        let record = if entry.remedies.is_empty() {
+            self
+        } else {
+            let mut layout = self.layout.clone();
+            layout.put_right(&entry.remedies, channels);
+            self.laid_out(layout, channels)
+        };
+        let guess = RecordGuess { kind: entry.kind, held_out: entry.held_out, ..record.guess };
+        Self { used: entry.used, guess, ..record }
+    }
+
     /// Its samples, where it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         self.flight.as_ref().filter(|_| self.used)

@@ -10,8 +10,8 @@ use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::requirements::{CommandType, ModeToleranceTable, Summary, SummarySource};
 
 use super::{
-    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Execution, ModeFinding,
-    bandwidth_findings, mode_findings,
+    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Engine, Execution, ModeFinding,
+    Progress, bandwidth_findings, mode_findings,
 };
 
 /// Which model of a condition a number is of.
@@ -262,6 +262,16 @@ pub fn requirements_of(analysis: &Analysis, execution: &Execution<'_>) -> Result
         requirements.missing.extend(of_condition.missing);
     }
     Ok(requirements)
+}
+
+impl Engine {
+    /// What a qualification asks of the models of every condition; see [`requirements_of`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` says so.
+    pub fn requirements(&self, analysis: &Analysis, progress: &dyn Progress) -> Result<Requirements, Cancelled> {
+        requirements_of(analysis, &Execution::new(self.executor(), progress, analysis.conditions.len()))
+    }
 }
 
 /// A caution for each response whose phase speaks for a reversed channel, with the models that it is of.

@@ -3,7 +3,6 @@
 use crate::correction::{CorrectedModelError, Pade};
 use crate::couplings::{CoupledModelError, without_delays};
 use crate::dataset::{BundleKind, Model, StateSpace};
-use crate::message_text::quoted;
 use crate::schedule::ScheduleError;
 
 use super::{Analysis, AssessedCorrection, ConditionAnalysis, RequirementRole};
@@ -12,13 +11,13 @@ use super::{Analysis, AssessedCorrection, ConditionAnalysis, RequirementRole};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
     /// It is a response that was measured.
-    #[error("{} is a measured response: without matrices it answers to no record", quoted(model))]
+    #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
     Measured {
         /// Its name.
         model: String,
     },
     /// It acts in discrete time.
-    #[error("{} acts in discrete time: records are simulated in continuous time", quoted(model))]
+    #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
     Discrete {
         /// Its name.
         model: String,

@@ -16,7 +16,6 @@ use crate::executor::{Executor, Sequential};
 use crate::identification::{
     FlightRecord, Preparation, Segment, Validation, ValidationSettings, ValidationWindow, segments_of, validate,
 };
-use crate::message_text::quoted;
 use crate::records::LaidOutRecord;
 use crate::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck, ToleranceTable};
 
@@ -251,7 +250,7 @@ pub fn time_histories_of(
         match found {
             Ok(finding) => histories.records.push(finding),
             Err(why) => {
-                let why = format!("{} model, record {}: {why}", role.name(), quoted(&history.record.flight.name));
+                let why = format!("{} model, record \"{}\": {why}", role.name(), history.record.flight.name);
                 histories.missing.push(missing_of(Some(history.result.condition.id()), why));
             }
         }
@@ -297,7 +296,7 @@ fn prepared<'a>(
         match segments {
             Ok(segments) => prepared.push(PreparedHistory { result, record, segments }),
             Err(why) => {
-                let why = format!("record {}: {why}", quoted(&record.flight.name));
+                let why = format!("record \"{}\": {why}", record.flight.name);
                 missing.push(missing_of(Some(of.condition), why));
             }
         }

@@ -74,9 +74,16 @@ fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
     let [short, long] = [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
     let share = found.share_inside(CONDITION, role, &short.quantity).unwrap();
     assert!((share - (short.share_inside + 2.0 * long.share_inside) / 3.0).abs() < 1e-12);
+    assert_eq!(found.conditions(), [(CONDITION, 2)]);
     let shown = found.share_table();
-    assert_eq!(shown.rows.len(), 4);
-    assert_eq!(shown.rows[0][..3], ["3", "physics", "2"].map(str::to_owned));
+    assert_eq!(shown.rows[2][..3], ["3", "2", "pitch rate"].map(str::to_owned));
+    // Rounded down: what is not wholly inside is never 100.
+    assert_eq!(shown.rows[2][3].parse::<f64>().unwrap(), (1e3 * share).floor() / 10.0);
+    assert_eq!(shown.rows[2][6], "100.0");
+    let squares = |n: usize| found.of_role(CONDITION, role).nth(n).unwrap().j_rms.unwrap().powi(2);
+    let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
+    assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
+    assert_eq!(found.rms_table().rows[0][2], format!("{rms:.2}"));
     let of_records = found.record_table(CONDITION);
     let rows = found.records[0].tolerances.len();
     assert_eq!(of_records.rows.len(), 2 * 4 * rows);

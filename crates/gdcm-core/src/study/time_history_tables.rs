@@ -9,11 +9,11 @@ use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFind
 type Counted = (f64, f64);
 
 impl TimeHistories {
-    /// The conditions that have records, in the order of their records.
-    pub fn conditions(&self) -> Vec<ConditionId> {
-        let mut conditions: Vec<ConditionId> = self.records.iter().map(|finding| finding.condition).collect();
-        conditions.dedup();
-        conditions
+    /// The conditions that have records, each with their number.
+    pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
+        let of_condition = self.records.chunk_by(|a, b| a.condition == b.condition);
+        let records = |of: &[HistoryFinding]| of.chunk_by(|a, b| a.record == b.record).count();
+        of_condition.map(|of| (of[0].condition, records(of))).collect()
     }
 
     /// The findings of a condition and a role.
@@ -42,29 +42,35 @@ impl TimeHistories {
     }
 
     /// The rows of the table of tolerances that were applied, in its order.
-    fn quantities(&self) -> Vec<&str> {
+    fn quantities(&self) -> impl Iterator<Item = &str> {
         let rows = self.tolerance_table.rows().iter().map(|row| row.quantity.as_str());
-        let is_applied =
-            |name: &&str| self.records.iter().any(|finding| finding.tolerances.iter().any(|of| of.quantity == **name));
-        rows.filter(is_applied).collect()
+        let is_applied = |finding: &HistoryFinding, name: &str| finding.tolerances.iter().any(|of| of.quantity == name);
+        rows.filter(move |name| self.records.iter().any(|finding| is_applied(finding, name)))
     }
 
-    /// Share of time inside each tolerance over all records of every condition and model, and `J_rms`.
+    /// Share of time inside each tolerance over all records of each condition, model by model.
     pub fn share_table(&self) -> Table {
-        let quantities = self.quantities();
-        let columns = ["condition", "model", "records"].into_iter().chain(quantities.iter().copied());
-        let mut table = Table::new("Share of time inside the tolerances [%]", columns.chain(["J_rms"]));
-        for condition in self.conditions() {
-            for role in RequirementRole::ALL {
-                let records = self.of_role(condition, role).count();
-                if records == 0 {
-                    continue;
-                }
-                let share = |name: &&str| number(self.share_inside(condition, role, name).map(|of| 100.0 * of), 0);
-                let head = [condition.to_string(), role.name().to_owned(), records.to_string()];
-                let cells = head.into_iter().chain(quantities.iter().map(share));
-                table.row(cells.chain([number(self.j_rms(condition, role), 2)]));
+        let heads = ["condition", "records", "quantity"].map(str::to_owned);
+        let columns = heads.into_iter().chain(RequirementRole::ALL.map(|role| format!("{} [%]", role.name())));
+        let mut table = Table::new("Share of time inside the tolerances", columns);
+        for (condition, records) in self.conditions() {
+            for quantity in self.quantities() {
+                let shares = RequirementRole::ALL.map(|role| self.share_inside(condition, role, quantity));
+                let heads = [condition.to_string(), records.to_string(), quantity.to_owned()];
+                table.row(heads.into_iter().chain(shares.map(percent)));
             }
+        }
+        table
+    }
+
+    /// `J_rms` over all records of each condition, model by model.
+    pub fn rms_table(&self) -> Table {
+        let columns = ["condition", "records"].into_iter().chain(RequirementRole::ALL.map(RequirementRole::name));
+        let mut table = Table::new("J_rms [deg, deg/s, ft/s, ft/s\u{b2}]", columns);
+        for (condition, records) in self.conditions() {
+            let heads = [condition.to_string(), records.to_string()];
+            let costs = RequirementRole::ALL.map(|role| number(self.j_rms(condition, role), 2));
+            table.row(heads.into_iter().chain(costs));
         }
         table
     }
@@ -92,11 +98,16 @@ fn record_cells(finding: &HistoryFinding, of: &ToleranceFinding, quantity: &str)
         format!("{}{held_out}", finding.record),
         quantity.to_owned(),
         finding.role.name().to_owned(),
-        number(Some(100.0 * of.share_inside), 1),
+        percent(Some(of.share_inside)),
         if of.largest_excess > 0.0 { format!("{} {}", telling(of.largest_excess, 2), of.unit) } else { "none".into() },
         number(Some(of.largest_excess_at_s), 1),
         of.trend.map_or("", super::Trend::name).to_owned(),
     ]
+}
+
+/// A share in percent, rounded down: 100 is all of it.
+fn percent(share: Option<f64>) -> String {
+    number(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }
 
 /// A number, or a dash.

@@ -4,12 +4,13 @@ mod assessment;
 mod conditions;
 mod couplings;
 mod page;
+mod requirements;
 mod schedule;
 mod study;
 
 use std::path::Path;
 
-use gdcm_core::study::{Analysis, Cancelled, Engine, Progress};
+use gdcm_core::study::{Analysis, Cancelled, Engine, Progress, TimeHistories};
 
 use super::dataset_file::LoadedDataset;
 use super::file_error::FileError;
@@ -45,12 +46,13 @@ impl ReportSource {
     }
 }
 
-/// The report of an analysis; `engine` has the responses that are drawn. Each condition is a step of the progress.
+/// The report of an analysis, with what its models answer to flight records where that is given; `engine` has the responses that are
+/// drawn. Each condition is a step of the progress.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` says so.
 pub fn report(
-    analysis: &Analysis,
+    (analysis, histories): (&Analysis, Option<&TimeHistories>),
     source: &ReportSource,
     engine: &mut Engine,
     progress: &dyn Progress,
@@ -67,6 +69,7 @@ pub fn report(
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
+    requirements::add_requirements(&mut page, (analysis, histories), engine, progress)?;
     page.section("The method");
     page.fixed(include_str!("method.html"));
     study::add_models(&mut page, &analysis.study);

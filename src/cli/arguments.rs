@@ -220,6 +220,12 @@ pub struct StudyArguments {
     /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
     pub sign: Vec<SaidSign>,
+    /// Outputs whose attitude the stick commands, separated by commas: their bandwidth is that of the phase alone (ADS-33E-PRF).
+    #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
+    pub attitude_command: Vec<String>,
+    /// File of the levels that bandwidth and phase delay are drawn with (docs/requirements.md).
+    #[arg(long, value_name = "FILE")]
+    pub levels: Option<PathBuf>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,

@@ -22,7 +22,6 @@ use gdcm_core::correction::Channel;
 use std::sync::Arc;
 
 use gdcm_core::dataset::{ModelId, Pair};
-use gdcm_core::requirements::LevelBoundaries;
 use gdcm_core::study::{
     AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, Requirements,
     Unobserved,
@@ -174,8 +173,6 @@ pub struct FigureRequest {
     pub couplings: Option<Arc<CouplingsAssessment>>,
     /// What a qualification asks, where that is shown.
     pub requirements: Option<Arc<Requirements>>,
-    /// The engineer's levels of bandwidth and phase delay.
-    pub levels: LevelBoundaries,
 }
 
 impl FigureRequest {
@@ -194,7 +191,6 @@ impl FigureRequest {
             bode,
             couplings: None,
             requirements: None,
-            levels: LevelBoundaries::default(),
         }
     }
 
@@ -227,7 +223,8 @@ impl FigureRequest {
             }
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
             FigureKind::Requirements => {
-                requirements_figure(self.requirements.as_deref()?, &analysis?.study.dataset, &self.levels)
+                let study = &analysis?.study;
+                requirements_figure(self.requirements.as_deref()?, &study.dataset, &study.requirements.levels)
             }
             FigureKind::Couplings => {
                 let shown = condition.map(|of| of.curves.condition.id());

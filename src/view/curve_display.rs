@@ -79,7 +79,7 @@ pub enum CurveCommand {
     ShowBands(bool),
     /// Do not draw a model.
     HideModel(ModelId),
-    /// Draw every model and every role.
+    /// Draw every model, and the roles that are drawn at first.
     ShowHidden,
     /// Move the phase of a curve by whole turns: condition, response, curve, turns up.
     Turn(ConditionId, Pair, CurveId, i32),
@@ -128,7 +128,7 @@ impl CurveDisplay {
             }
             CurveCommand::ShowHidden => {
                 self.hidden_models.clear();
-                self.hidden_roles.clear();
+                self.hidden_roles = Self::hidden_at_first();
             }
             CurveCommand::Turn(condition, pair, curve, by) => {
                 let turns = self.turns.entry((condition, pair, curve)).or_default();
@@ -261,9 +261,13 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
         // something to end here.
         if is_isolated { isolation.free_key(Key::Escape) } else { isolation.enabled(false) }.within(Menu::Curves, 3),
-        Entry::new("Show hidden curves", "Draw every model and every role", CurveCommand::ShowHidden.into())
-            .within(Menu::Curves, 3)
-            .enabled(is_hidden),
+        Entry::new(
+            "Show hidden curves",
+            "Draw every model, and the roles that are drawn at first",
+            CurveCommand::ShowHidden.into(),
+        )
+        .within(Menu::Curves, 3)
+        .enabled(is_hidden),
         Entry::new(
             "Mark the frequency under the pointer",
             "In every plot over frequency; two marks show what changes between them",

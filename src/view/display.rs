@@ -15,7 +15,7 @@ use super::plot::{
     PhaseUnit, Role,
 };
 use super::start_page::OpensWith;
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsTable, View};
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View};
 use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
@@ -81,8 +81,8 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
-    /// Which table of requirements is shown.
-    pub requirements_table: RequirementsTable,
+    /// Which page of requirements is shown.
+    pub requirements_page: RequirementsPage,
     /// Its order.
     pub requirements_sorting: Sorting,
     /// Whether the plots of gains show no error bars and bands.

@@ -6,7 +6,9 @@ use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRe
 
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
-use super::views::{bode_options, condition_source, net_gain_pairs, shown_couplings, shown_requirements};
+use super::views::{
+    bode_options, condition_source, net_gain_pairs, shown_couplings, shown_requirements, shown_test_answers,
+};
 use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
@@ -60,6 +62,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
     let requirements = shown_requirements(state, kind);
+    let test_answers = shown_test_answers(state, kind);
     let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
     Some(FigureRequest {
         measure,
@@ -69,6 +72,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         bode,
         couplings,
         requirements,
+        test_answers,
         ..usual
     })
 }

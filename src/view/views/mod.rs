@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use egui::Ui;
 use gdcm_core::study::{
-    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RequirementsJob, SimulationJob, VariantJob,
+    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RequirementsJob, SimulationJob, TestAnswersJob,
+    VariantJob,
 };
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,7 @@ mod couplings;
 mod error;
 mod evidence;
 mod frequency;
+mod histories;
 mod leads;
 mod net_gain;
 mod overview;
@@ -36,6 +38,7 @@ pub use couplings::*;
 pub use error::*;
 pub use evidence::*;
 pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
+pub use histories::*;
 pub use leads::*;
 pub use net_gain::*;
 pub use overview::*;
@@ -236,9 +239,12 @@ impl View {
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-                tools_width: 260.0,
+                tools_width: 310.0,
                 is_of_all_conditions: true,
-                needs: |state| requirements_job(state).map(Need::Requirements).into_iter().collect(),
+                needs: |state| match state.display.requirements_page {
+                    RequirementsPage::Histories => test_answers_job(state).map(Need::TestAnswers).into_iter().collect(),
+                    _ => requirements_job(state).map(Need::Requirements).into_iter().collect(),
+                },
                 figure: Some(FigureKind::Requirements),
                 ..ViewKind::new(
                     "Requirements",
@@ -359,4 +365,6 @@ pub enum Need {
     Couplings(CouplingsJob),
     /// What a qualification asks.
     Requirements(RequirementsJob),
+    /// What models answer to the test input.
+    TestAnswers(TestAnswersJob),
 }

@@ -38,6 +38,7 @@ mod sign;
 mod study;
 mod substitutions;
 mod table;
+mod test_answers;
 mod uncertainty;
 
 pub use crate::progress::{Cancelled, Progress, Unobserved};
@@ -76,6 +77,7 @@ pub use sign::*;
 pub use study::*;
 pub use substitutions::*;
 pub use table::*;
+pub use test_answers::*;
 pub use uncertainty::*;
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use gdcm_core::dataset::{ModelId, Pair};
 use gdcm_core::study::{
     AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, Requirements,
-    Unobserved,
+    TestAnswers, Unobserved,
 };
 
 mod assessment;
@@ -49,6 +49,7 @@ mod requirements;
 mod responses;
 mod role;
 mod tables;
+mod test_answers;
 mod ticks;
 mod units;
 
@@ -72,6 +73,7 @@ pub use poles::*;
 pub use requirements::*;
 pub use responses::*;
 pub use role::*;
+pub use test_answers::*;
 pub use ticks::*;
 pub use units::*;
 
@@ -173,6 +175,8 @@ pub struct FigureRequest {
     pub couplings: Option<Arc<CouplingsAssessment>>,
     /// What a qualification asks, where that is shown.
     pub requirements: Option<Arc<Requirements>>,
+    /// What models answer to a test input, where that is shown in place of bandwidths.
+    pub test_answers: Option<Arc<TestAnswers>>,
 }
 
 impl FigureRequest {
@@ -191,6 +195,7 @@ impl FigureRequest {
             bode,
             couplings: None,
             requirements: None,
+            test_answers: None,
         }
     }
 
@@ -224,6 +229,9 @@ impl FigureRequest {
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
             FigureKind::Requirements => {
                 let study = &analysis?.study;
+                if let Some(answers) = &self.test_answers {
+                    return Some(test_answers_figure(answers, &study.dataset));
+                }
                 requirements_figure(self.requirements.as_deref()?, &study.dataset, &study.requirements.levels)
             }
             FigureKind::Couplings => {

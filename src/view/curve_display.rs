@@ -102,7 +102,7 @@ impl CurveDisplay {
     const MOST_PINNED: usize = 2;
 
     /// Roles that are drawn only when they are asked for: the couplings alone are a step on the way, not a result.
-    fn hidden_at_first() -> BTreeSet<Role> {
+    pub fn hidden_at_first() -> BTreeSet<Role> {
         BTreeSet::from([Role::Coupled])
     }
 

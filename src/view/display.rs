@@ -158,7 +158,7 @@ pub struct Preferences {
     pub phase: PhaseUnit,
     /// How differences of phases are drawn.
     pub phase_error: PhaseErrorUnit,
-    /// Roles whose curves are not drawn.
+    /// Roles that are hidden or shown otherwise than at first, whichever later versions hide at first.
     pub hidden_roles: BTreeSet<Role>,
     /// Whether the plot of errors shows what a pilot does not notice.
     pub shows_muad: bool,
@@ -181,7 +181,7 @@ impl Preferences {
             magnitude: display.curves.magnitude,
             phase: display.curves.phase,
             phase_error: display.curves.phase_error,
-            hidden_roles: display.curves.hidden_roles.clone(),
+            hidden_roles: &display.curves.hidden_roles ^ &CurveDisplay::hidden_at_first(),
             shows_muad: display.curves.shows_muad,
             shows_bands: display.curves.shows_bands,
             lists_no_values: !display.curves.lists_values,
@@ -198,7 +198,7 @@ impl Preferences {
         display.curves.magnitude = self.magnitude;
         display.curves.phase = self.phase;
         display.curves.phase_error = self.phase_error;
-        display.curves.hidden_roles.clone_from(&self.hidden_roles);
+        display.curves.hidden_roles = &self.hidden_roles ^ &CurveDisplay::hidden_at_first();
         display.curves.shows_muad = self.shows_muad;
         display.curves.shows_bands = self.shows_bands;
         display.curves.lists_values = !self.lists_no_values;

@@ -37,6 +37,7 @@ fn every_view_is_saved_from_its_header() {
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     for view in views_with_figure() {
         show(&mut window, view);
+        wait_until(&mut window, "what it shows", |window| !state(window).results.background.is_busy());
         assert_saved(&mut window, view, FigureFormat::Svg, folder.path());
     }
 }

@@ -44,7 +44,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     give(&mut window, Action::ShowRequirements(RequirementsPage::Bandwidth));
     window.get_by_label_contains("Phase delay over bandwidth of LAT → P");
     let first = requirements.bandwidth.first().unwrap();
-    let rests = window.get_all_by_label(first.role.name()).last().unwrap().rect().center();
+    let rests = window.get_all_by_label(first.role.name()).next().unwrap().rect().center();
     window.drag_at(rests);
     window.drop_at(rests);
     window.run_steps(4);

@@ -318,7 +318,7 @@ pub struct FigureArguments {
     /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
     #[arg(long, value_name = "PAIR")]
     pub zeros: Option<PairList>,
-    /// Among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
+    /// About the identified response, and among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
     #[arg(long)]
     pub muad: bool,
     /// Width on paper: one column of a journal (84 mm), or both (174 mm).

@@ -230,7 +230,8 @@ fn unit_entries(state: &State) -> Vec<Entry> {
         ),
         entry(
             if curves.shows_muad { "Hide what a pilot does not notice" } else { "Show what a pilot does not notice" },
-            "Envelopes of maximum unnoticeable added dynamics in the plot of errors, and where the mismatch leaves them",
+            "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode, and in the plot of errors, with where \
+             the mismatch leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
         ),
     ]

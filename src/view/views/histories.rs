@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Ui, Vec2, vec2};
+use egui::{Label, Ui, Vec2, vec2};
 use gdcm_core::requirements::{TestInput, TestInputShape};
 use gdcm_core::study::{Edit, RequirementSettings, TestAnswers, TestAnswersJob};
 use gdcm_core::units::number;
@@ -13,7 +13,7 @@ use crate::view::command::Command;
 use crate::view::controls::number_entry_ui;
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureScene, FigureWords, figure_ui};
+use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -40,7 +40,8 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         Some(Err(why)) => return drop(ui.label(palette.small_warning(why))),
         None => return drop(ui.label(palette.dim(state.results.absence()))),
     };
-    ui.label(palette.small(figure.caption.clone()));
+    ui.add(Label::new(palette.small(&figure.caption)).wrap());
+    figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
     let scene = FigureScene {
         name: "requirements in time",

@@ -238,8 +238,9 @@ impl View {
             Self::Requirements => ViewKind {
                 group: ViewGroup::Judge,
                 takes_dock: true,
+                title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
                 tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-                tools_width: 310.0,
+                tools_width: 130.0,
                 is_of_all_conditions: true,
                 needs: |state| match state.display.requirements_page {
                     RequirementsPage::Histories => test_answers_job(state).map(Need::TestAnswers).into_iter().collect(),

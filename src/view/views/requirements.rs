@@ -16,11 +16,14 @@ use crate::view::command::Command;
 use crate::view::controls::{button_ui, check_ui, entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
 
+/// What stands over every page.
+pub(super) const NO_QUALIFICATION: &str =
+    "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Part of the height that the table has at first.
@@ -63,9 +66,6 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
 
 /// The page that is chosen, below what has to be known of all of them.
 pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let words =
-        "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
-    ui.add(Label::new(palette.small(words)).truncate());
     if state.display.requirements_page == RequirementsPage::Histories {
         return histories_ui(ui, state, palette, commands);
     }
@@ -101,10 +101,10 @@ fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
 /// What bandwidths are asked with: which sticks command an attitude, and the engineer's levels.
 fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let settings = &state.study.requirements;
-    let mut decide = |what: &'static str, change: &dyn Fn(&mut RequirementSettings)| {
+    let decided = |what: &'static str, change: &dyn Fn(&mut RequirementSettings)| {
         let mut changed = RequirementSettings::clone(settings);
         change(&mut changed);
-        commands.push(Edit::SetRequirements(what, Arc::new(changed)).into());
+        Command::from(Edit::SetRequirements(what, Arc::new(changed)))
     };
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
@@ -118,25 +118,23 @@ fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
             let hint =
                 "The stick commands the attitude, not its rate: the bandwidth is then that of the phase margin alone";
             if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
-                decide("attitude command", &|settings| {
+                commands.push(decided("attitude command", &|settings| {
                     if is_on {
                         settings.attitude_command.insert(name.clone());
                     } else {
                         settings.attitude_command.remove(name);
                     }
-                });
+                }));
             }
         }
         ui.separator();
         let levels = settings.levels.all().len();
         ui.label(palette.small(if levels == 0 { "levels: none".to_owned() } else { format!("levels: {levels}") }));
         if levels > 0 && ui.small_button("Remove levels").clicked() {
-            decide("levels", &|settings| settings.levels = LevelBoundaries::default());
+            commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
         }
-    });
-    ui.horizontal(|ui| {
         let hint = "path of a file of levels, as JSON";
-        if let Some(path) = entry_ui(ui, "File of levels", "", hint, 260.0).filter(|path| !path.trim().is_empty()) {
+        if let Some(path) = entry_ui(ui, "File of levels", "", hint, 200.0).filter(|path| !path.trim().is_empty()) {
             commands.push(Command::ReadLevels(path.trim().into()));
         }
         let hint = "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]: none is built in, for they depend on the task and \
@@ -154,6 +152,7 @@ fn plots_ui(
 ) {
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     let pairs = bandwidth_pairs(requirements);
+    figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
     let scene = FigureScene {
         name: "requirements",

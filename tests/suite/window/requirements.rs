@@ -54,7 +54,10 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
 }
 
 fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_core::study::Requirements> {
-    wait_until(window, "the requirements", |window| !state(window).results.background.is_busy());
+    wait_until(window, "the requirements", |window| {
+        let decided = &state(window).study.requirements.attitude_command;
+        state(window).requirements().is_some_and(|of| of.attitude_command == *decided)
+    });
     state(window).requirements().unwrap().clone()
 }
 
@@ -92,7 +95,8 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
     let answers = |window: &mut Window| {
         wait_until(window, "the answers", |window| {
-            state(window).test_answers().is_some() && !state(window).results.background.is_busy()
+            let decided = state(window).study.requirements.test;
+            matches!(state(window).test_answers(), Some(Ok(found)) if found.test == decided)
         });
         state(window).test_answers().unwrap().clone().unwrap()
     };
@@ -100,6 +104,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     assert_eq!(step.input, state(&window).display.pair.input);
     assert!(step.models.iter().all(|(_, answer)| answer.is_ok()), "{:?}", step.models);
     window.get_by_label("P [deg/s] over time");
+    click(&mut window, "Course of the test input");
     click(&mut window, "doublet");
     let doublet = answers(&mut window);
     assert!(doublet.signal.iter().any(|value| *value < 0.0) && step.signal.iter().all(|value| *value >= 0.0));

@@ -30,6 +30,7 @@ use gdcm_core::study::{
 mod assessment;
 mod axis;
 mod bode;
+mod coherence;
 mod condition_source;
 mod couplings;
 mod curve;
@@ -56,6 +57,7 @@ mod units;
 pub use assessment::*;
 pub use axis::*;
 pub use bode::*;
+pub use coherence::*;
 pub use condition_source::*;
 pub use couplings::*;
 pub use curve::*;

@@ -107,7 +107,7 @@ fn algebraic_loop(d: &DMatrix<f64>, k: &DMatrix<f64>) -> Result<LU<f64, Dyn, Dyn
 }
 
 /// The model with the delays of its channels as states.
-fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, CorrectedModelError> {
+pub(crate) fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, CorrectedModelError> {
     let timing = Timing { sample_time_s: physics.timing().sample_time_s, ..Timing::default() };
     if *physics.timing() == timing {
         return Ok(physics.clone());

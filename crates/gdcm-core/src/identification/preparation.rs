@@ -335,6 +335,20 @@ pub fn prepare(
     Ok(Prepared { segments, records: uses, cautions })
 }
 
+/// The segments of one record that a model is compared with in time, as [`prepare`] makes them; a channel that never moved is no
+/// hindrance to that.
+///
+/// # Errors
+/// Settings out of range, a record that does not fit them, time that does not increase or is uneven, no segment left.
+pub fn segments_of(record: &FlightRecord, preparation: &Preparation) -> Result<Vec<Segment>, PreparationError> {
+    preparation.checked()?;
+    let PreparedRecord { segments, longest_s, .. } = prepare_record(0, record, preparation)?;
+    if segments.is_empty() {
+        return Err(PreparationError::NothingLeft { longest_s, least_s: preparation.least_segment_s });
+    }
+    Ok(segments)
+}
+
 /// Whether a channel has one value within each segment, but for rounding.
 fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
     segments.iter().all(|segment| {

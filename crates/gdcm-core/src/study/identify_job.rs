@@ -7,7 +7,7 @@ use crate::dataset::{ConditionId, StateSpace};
 use crate::executor::Executor;
 use crate::identification::{
     FlightRecord, Identification, IdentificationError, Options, Preparation, Validation, ValidationSettings, identify,
-    prepare, validate,
+    segments_of, validate,
 };
 use crate::records::LaidOutRecord;
 
@@ -182,13 +182,13 @@ impl Job for SimulationJob {
     type Output = Result<Arc<Validation>, String>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let prepared = prepare(std::slice::from_ref(self.record.as_ref()), &self.preparation, executor.as_ref());
+        let segments = segments_of(&self.record, &self.preparation);
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        let found = prepared.map_err(|error| error.to_string()).and_then(|prepared| {
+        let found = segments.map_err(|error| error.to_string()).and_then(|segments| {
             let settings = ValidationSettings::unfiltered();
-            validate(&self.model, &prepared.segments, &settings, executor.as_ref()).map_err(|error| error.to_string())
+            validate(&self.model, &segments, &settings, executor.as_ref()).map_err(|error| error.to_string())
         });
         Ok(found.map(Arc::new))
     }

@@ -24,12 +24,14 @@ mod identify_job;
 mod job;
 mod lead_compensation;
 mod reconcile;
+mod record_history;
 mod remark;
 mod required_bandwidth;
 mod required_modes;
 mod requirement_settings;
 mod requirements;
 mod requirements_tables;
+mod role_model;
 pub mod setting;
 mod setting_row;
 mod settings;
@@ -39,6 +41,10 @@ mod study;
 mod substitutions;
 mod table;
 mod test_answers;
+mod time_histories;
+#[cfg(test)]
+mod time_histories_tests;
+mod time_history_tables;
 mod uncertainty;
 
 pub use crate::progress::{Cancelled, Progress, Unobserved};
@@ -64,12 +70,14 @@ pub use identify_job::*;
 pub use job::*;
 pub use lead_compensation::*;
 pub use reconcile::*;
+pub use record_history::*;
 pub use remark::*;
 pub use required_bandwidth::*;
 pub use required_modes::*;
 pub use requirement_settings::*;
 pub use requirements::*;
 pub use requirements_tables::*;
+pub use role_model::*;
 pub use setting::SETTINGS;
 pub use setting_row::*;
 pub use settings::*;
@@ -78,6 +86,7 @@ pub use study::*;
 pub use substitutions::*;
 pub use table::*;
 pub use test_answers::*;
+pub use time_histories::*;
 pub use uncertainty::*;
 
 #[cfg(test)]

@@ -32,6 +32,11 @@ impl RequirementRole {
     /// Every role, in the order of tables.
     pub const ALL: [Self; 4] = [Self::Physics, Self::Corrected, Self::Scheduled, Self::Identified];
 
+    /// The bundle whose representative it is of.
+    pub fn bundle(self) -> BundleKind {
+        if self == Self::Identified { BundleKind::Identified } else { BundleKind::Physics }
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
@@ -138,8 +143,7 @@ impl AskedCondition<'_> {
 
     /// The name of the model of a role.
     pub(super) fn model_name(&self, role: RequirementRole) -> String {
-        let kind = if role == RequirementRole::Identified { BundleKind::Identified } else { BundleKind::Physics };
-        self.result.representative_name(kind).to_owned()
+        self.result.representative_name(role.bundle()).to_owned()
     }
 
     /// The correction of a role; none of models that have none.

@@ -4,12 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use crate::correction::{ChannelCorrection, Pade};
-use crate::dataset::{BundleKind, ConditionId, StateSpace};
+use crate::dataset::ConditionId;
 use crate::executor::{Executor, each};
 use crate::requirements::TestInput;
 
-use super::{Analysis, AssessedCorrection, Cancelled, ConditionAnalysis, Job, Progress, RequirementRole};
+use super::{Analysis, Cancelled, Job, Progress, RequirementRole};
 
 /// Time shown, as a multiple of the duration of the test.
 const SHOWN: f64 = 5.0;
@@ -45,7 +44,7 @@ impl TestAnswers {
         let test = analysis.study.requirements.test;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answer = |role: &RequirementRole| {
-            let model = model_in_time(analysis, result, *role)?;
+            let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
             test.answer(&model, input, sample_time_s, STEPS + 1).map_err(|error| error.to_string())
         };
         let answers = each(executor, &RequirementRole::ALL, answer);
@@ -57,26 +56,6 @@ impl TestAnswers {
     /// The times of the samples \[s\].
     pub fn time_s(&self) -> Vec<f64> {
         (0..self.signal.len()).map(|n| n as f64 * self.sample_time_s).collect()
-    }
-}
-
-/// The model of a role in continuous time, its delays as states (Padé approximants); in words why there is none.
-fn model_in_time(analysis: &Analysis, result: &ConditionAnalysis, role: RequirementRole) -> Result<StateSpace, String> {
-    let kind = if role == RequirementRole::Identified { BundleKind::Identified } else { BundleKind::Physics };
-    let name = result.representative_name(kind);
-    let model = result.condition.model(kind, name).and_then(|model| model.state_space());
-    let model = model.ok_or_else(|| format!("{name} is a measured response: it has no matrices to simulate"))?;
-    let corrected = |correction: &ChannelCorrection| {
-        let corrected = result.corrected_model(model, correction, Pade::default());
-        corrected.map(|corrected| corrected.model).map_err(|error| error.to_string())
-    };
-    match role {
-        RequirementRole::Physics | RequirementRole::Identified => Ok(model.clone()),
-        RequirementRole::Corrected => corrected(&result.correction),
-        RequirementRole::Scheduled => {
-            let of = AssessedCorrection::Scheduled.of(analysis, result).map_err(|error| error.to_string())?;
-            corrected(&of)
-        }
     }
 }
 
@@ -112,6 +91,8 @@ impl Job for TestAnswersJob {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::correction::Pade;
+    use crate::dataset::BundleKind;
     use crate::requirements::TestInputShape;
     use crate::study::couplings_example_tests::EXAMPLE;
     use crate::study::{Edit, RequirementSettings, Unobserved};

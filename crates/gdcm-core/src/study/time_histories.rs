@@ -1,0 +1,424 @@
+//! Time histories of the models of every condition within tolerances about its flight records (M17.2).
+//!
+//! ```text
+//! 1  a record is prepared as an identification prepares it, pieces of 2 s and more
+//! 2  each model answers to the flown sticks, in windows of at most 10 s, each from an estimated state and offsets (M14, 6)
+//! 3  each row of the table of tolerances whose output and unit are there: share inside, largest excess, correlation
+//! ```
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::dataset::{Channel, ConditionId, Pair, PairTable, StateSpace};
+use crate::executor::{Executor, Sequential};
+use crate::identification::{
+    FlightRecord, Preparation, Segment, Validation, ValidationSettings, ValidationWindow, segments_of, validate,
+};
+use crate::message_text::quoted;
+use crate::records::LaidOutRecord;
+use crate::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck, ToleranceTable};
+
+use super::{
+    Analysis, Cancelled, ConditionAnalysis, Execution, Job, MissingFinding, Progress, RequirementRole, RoleModelError,
+};
+
+/// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
+pub(super) const LEAST_PIECE_S: f64 = 2.0;
+/// What a reason for an absent time history is listed under.
+const WHAT: &str = "time histories";
+
+/// A flight record that models are compared with.
+#[derive(Clone, Debug)]
+pub struct HistoryRecord {
+    /// Its samples, in the units of the dataset's channels.
+    pub flight: Arc<FlightRecord>,
+    /// Whether the identified models were kept from it.
+    pub held_out: bool,
+}
+
+impl PartialEq for HistoryRecord {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.flight, &other.flight) && self.held_out == other.held_out
+    }
+}
+
+/// The flight records of a condition, and how they are prepared.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HistoryRecords {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Its records.
+    pub records: Vec<HistoryRecord>,
+    /// How their channels are prepared.
+    pub preparation: Preparation,
+}
+
+impl HistoryRecords {
+    /// Those of the `records` that are used.
+    pub fn of<'r>(
+        condition: ConditionId,
+        records: impl IntoIterator<Item = &'r LaidOutRecord>,
+        preparation: Preparation,
+    ) -> Self {
+        let used = records.into_iter().filter_map(|record| {
+            let flight = Arc::clone(record.used_flight()?);
+            Some(HistoryRecord { flight, held_out: record.guess.held_out })
+        });
+        Self { condition, records: used.collect(), preparation }
+    }
+
+    /// Steps of [`time_histories_of`]: one to prepare each record, one for each model's answer to it.
+    pub fn steps(records: &[Self]) -> usize {
+        (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
+    }
+}
+
+/// What is asked for: records against an analysis.
+#[derive(Clone, Debug)]
+pub struct TimeHistoriesJob {
+    /// The analysis.
+    pub analysis: Arc<Analysis>,
+    /// The records, condition by condition.
+    pub records: Vec<HistoryRecords>,
+    /// The tolerances.
+    pub tolerances: ToleranceTable,
+}
+
+impl PartialEq for TimeHistoriesJob {
+    fn eq(&self, other: &Self) -> bool {
+        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
+        same_analysis && self.records == other.records && self.tolerances == other.tolerances
+    }
+}
+
+impl Job for TimeHistoriesJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    type Output = Arc<TimeHistories>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let execution = Execution::new(executor.as_ref(), progress, HistoryRecords::steps(&self.records));
+        Ok(Arc::new(time_histories_of(&self.analysis, &self.records, &self.tolerances, &execution)?))
+    }
+}
+
+/// Whether an off-axis output goes the way that it went in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trend {
+    /// The correlation of simulated and flown is positive.
+    Correct,
+    /// It is not.
+    Opposite,
+}
+
+impl Trend {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Correct => "correct",
+            Self::Opposite => "opposite",
+        }
+    }
+}
+
+/// One model's answer to one record against one row of the table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ToleranceFinding {
+    /// What is compared ("bank angle").
+    pub quantity: String,
+    /// The output that it is read from.
+    pub output: String,
+    /// Whether it is the integral of that output from the start of each window.
+    pub integrated: bool,
+    /// Unit of what is compared.
+    pub unit: String,
+    /// Share of the samples that are inside, 0 to 1.
+    pub share_inside: f64,
+    /// The largest distance beyond the corridor, in `unit`; negative where all samples are inside.
+    pub largest_excess: f64,
+    /// When that is, on the record's clock \[s\].
+    pub largest_excess_at_s: f64,
+    /// Correlation of simulated and flown about their means; none where one of them does not move.
+    pub correlation: Option<f64>,
+    /// Whether the output is on-axis to the input that moved most; none where that is not known.
+    pub on_axis: Option<bool>,
+    /// Off the axis, the sign of the correlation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trend: Option<Trend>,
+}
+
+impl ToleranceFinding {
+    /// Its numbers by their names.
+    pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
+        [
+            ("share_inside", Some(self.share_inside)),
+            ("largest_excess", Some(self.largest_excess)),
+            ("largest_excess_at_s", Some(self.largest_excess_at_s)),
+            ("correlation", self.correlation),
+        ]
+    }
+}
+
+/// One model's answer to one record.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HistoryFinding {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Its true airspeed \[kt\].
+    pub airspeed_kt: f64,
+    /// Name of the record.
+    pub record: String,
+    /// Whether the identified models were kept from it.
+    pub held_out: bool,
+    /// Which model.
+    pub role: RequirementRole,
+    /// Its name.
+    pub model: String,
+    /// The input that moved most; none where the inputs have different units.
+    pub moved_input: Option<String>,
+    /// Samples that are compared.
+    pub samples: usize,
+    /// Windows that they are in.
+    pub windows: usize,
+    /// Length of the longest window \[s\].
+    pub window_s: f64,
+    /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; none where no output has such a unit.
+    pub j_rms: Option<f64>,
+    /// Theil's coefficient of each output that moves, by its name: 0 to 1.
+    pub theil: BTreeMap<String, f64>,
+    /// Each row of the table that can be applied.
+    pub tolerances: Vec<ToleranceFinding>,
+}
+
+/// Time histories of the models of every condition that has records, as they are written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeHistories {
+    /// The tolerances asked for.
+    pub tolerance_table: ToleranceTable,
+    /// Every record with every model that answers to it.
+    pub records: Vec<HistoryFinding>,
+    /// What is not compared, and why.
+    pub missing: Vec<MissingFinding>,
+}
+
+/// Everything that answers are compared by, the same for all records.
+struct Comparer<'a> {
+    inputs: &'a [Channel],
+    outputs: &'a [Channel],
+    on_axis: PairTable<bool>,
+    /// The rows that can be applied, each with its tolerance in the unit of the dataset.
+    rows: Vec<(&'a Tolerance, ChannelTolerance)>,
+}
+
+/// A record, ready to be simulated, with the models that are to answer.
+struct PreparedHistory<'a> {
+    result: &'a ConditionAnalysis,
+    record: &'a HistoryRecord,
+    segments: Vec<Segment>,
+}
+
+/// Time histories of the models of every condition within `tolerances` about its `records` (M17.2). Steps are
+/// [`HistoryRecords::steps`].
+///
+/// # Errors
+/// [`Cancelled`] where `execution` is stopped.
+pub fn time_histories_of(
+    analysis: &Analysis,
+    records: &[HistoryRecords],
+    tolerances: &ToleranceTable,
+    execution: &Execution<'_>,
+) -> Result<TimeHistories, Cancelled> {
+    let mut missing = without_records(analysis, records);
+    let comparer = Comparer::of(analysis, tolerances, &mut missing);
+    let prepared = prepared(analysis, records, execution, &mut missing)?;
+    let models = role_models(analysis, &prepared, &mut missing);
+    let answers: Vec<(&PreparedHistory<'_>, RequirementRole, &StateSpace)> = prepared
+        .iter()
+        .flat_map(|history| {
+            let of_condition = models.get(&history.result.condition.id()).into_iter().flatten();
+            of_condition.map(move |(role, model)| (history, *role, model))
+        })
+        .collect();
+    let found = execution.each(answers.len(), 1, |index| {
+        let (history, role, model) = answers[index];
+        comparer.finding(history, role, model)
+    })?;
+    let mut histories = TimeHistories { tolerance_table: tolerances.clone(), records: Vec::new(), missing };
+    for ((history, role, _), found) in answers.into_iter().zip(found) {
+        match found {
+            Ok(finding) => histories.records.push(finding),
+            Err(why) => {
+                let why = format!("{} model, record {}: {why}", role.name(), quoted(&history.record.flight.name));
+                histories.missing.push(missing_of(Some(history.result.condition.id()), why));
+            }
+        }
+    }
+    Ok(histories)
+}
+
+fn missing_of(condition: Option<ConditionId>, why: String) -> MissingFinding {
+    MissingFinding { condition, what: WHAT, why }
+}
+
+/// The conditions that no record is of.
+fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
+    let has_records = |id: ConditionId| records.iter().any(|of| of.condition == id && !of.records.is_empty());
+    if records.iter().all(|of| of.records.is_empty()) {
+        return vec![missing_of(None, "no flight record was given".to_owned())];
+    }
+    let ids = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
+    let without = ids.filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
+    without.map(|id| missing_of(Some(id), "no flight record of it was given".to_owned())).collect()
+}
+
+/// Every record of a condition with a result, prepared; the reasons for the others go to `missing`.
+fn prepared<'a>(
+    analysis: &'a Analysis,
+    records: &'a [HistoryRecords],
+    execution: &Execution<'_>,
+    missing: &mut Vec<MissingFinding>,
+) -> Result<Vec<PreparedHistory<'a>>, Cancelled> {
+    let with_result = |of: &'a HistoryRecords| Some((analysis.condition(of.condition)?, of));
+    let all: Vec<(&ConditionAnalysis, &HistoryRecords, &HistoryRecord)> = records
+        .iter()
+        .filter_map(with_result)
+        .flat_map(|(result, of)| of.records.iter().map(move |record| (result, of, record)))
+        .collect();
+    let segments = execution.each(all.len(), 1, |index| {
+        let (_, of, record) = all[index];
+        let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..of.preparation.clone() };
+        segments_of(&record.flight, &preparation)
+    })?;
+    let mut prepared = Vec::new();
+    for ((result, of, record), segments) in all.into_iter().zip(segments) {
+        match segments {
+            Ok(segments) => prepared.push(PreparedHistory { result, record, segments }),
+            Err(why) => {
+                let why = format!("record {}: {why}", quoted(&record.flight.name));
+                missing.push(missing_of(Some(of.condition), why));
+            }
+        }
+    }
+    Ok(prepared)
+}
+
+/// The models of each condition that has a record.
+fn role_models(
+    analysis: &Analysis,
+    prepared: &[PreparedHistory<'_>],
+    missing: &mut Vec<MissingFinding>,
+) -> BTreeMap<ConditionId, Vec<(RequirementRole, StateSpace)>> {
+    let mut models = BTreeMap::new();
+    for PreparedHistory { result, .. } in prepared {
+        let id = result.condition.id();
+        models.entry(id).or_insert_with(|| {
+            let model = |role| match analysis.role_model(result, role) {
+                Ok(model) => Some((role, model)),
+                // Said once, of the schedule.
+                Err(RoleModelError::NoSchedule(_)) => None,
+                Err(why) => {
+                    missing.push(missing_of(Some(id), format!("{} model: {why}", role.name())));
+                    None
+                }
+            };
+            RequirementRole::ALL.into_iter().filter_map(model).collect()
+        });
+    }
+    models
+}
+
+impl<'a> Comparer<'a> {
+    fn of(analysis: &'a Analysis, tolerances: &'a ToleranceTable, missing: &mut Vec<MissingFinding>) -> Self {
+        let dataset = &analysis.study.dataset;
+        let mut rows = Vec::new();
+        for tolerance in tolerances.rows() {
+            match tolerance.of_outputs(dataset.outputs()) {
+                Ok(of_channel) => rows.push((tolerance, of_channel)),
+                Err(why) => missing.push(missing_of(None, why.to_string())),
+            }
+        }
+        let on_axis = dataset.measuring_pairs();
+        Self { inputs: dataset.inputs(), outputs: dataset.outputs(), on_axis, rows }
+    }
+
+    /// The input that varies most over the segments of a record; none where the inputs cannot be compared.
+    fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
+        let (first, others) = self.inputs.split_first()?;
+        if others.iter().any(|input| input.unit != first.unit) {
+            return None;
+        }
+        let variation = |input: usize| -> f64 {
+            let squares = segments.iter().map(|segment| {
+                let samples = segment.inputs.column(input);
+                samples.variance() * samples.len() as f64
+            });
+            squares.sum()
+        };
+        (0..self.inputs.len()).max_by(|a, b| variation(*a).total_cmp(&variation(*b)))
+    }
+
+    /// The answer of a model to a record against the tolerances, or in words why there is none.
+    fn finding(
+        &self,
+        history: &PreparedHistory<'_>,
+        role: RequirementRole,
+        model: &StateSpace,
+    ) -> Result<HistoryFinding, String> {
+        let PreparedHistory { result, record, segments } = history;
+        let settings = ValidationSettings::unfiltered();
+        let validation = validate(model, segments, &settings, &Sequential).map_err(|error| error.to_string())?;
+        let moved = self.moved_input(segments);
+        let rows = self.rows.iter().map(|row| self.against(row, &validation.windows, moved));
+        let length_s = |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
+        Ok(HistoryFinding {
+            condition: result.condition.id(),
+            airspeed_kt: result.condition.flight_state().airspeed_kt,
+            record: record.flight.name.clone(),
+            held_out: record.held_out,
+            role,
+            model: result.representative_name(role.bundle()).to_owned(),
+            moved_input: moved.map(|input| self.inputs[input].name.clone()),
+            samples: validation.windows.iter().map(|window| window.measured.nrows()).sum(),
+            windows: validation.windows.len(),
+            window_s: validation.windows.iter().map(length_s).fold(0.0, f64::max),
+            j_rms: RmsCost::of(&validation.windows, self.outputs).map(|cost| cost.value),
+            theil: self.theil(&validation),
+            tolerances: rows.collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn theil(&self, validation: &Validation) -> BTreeMap<String, f64> {
+        let named = self.outputs.iter().zip(&validation.theil);
+        named.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?))).collect()
+    }
+
+    /// One row of the table over all windows of a record.
+    fn against(
+        &self,
+        (tolerance, of_channel): &(&Tolerance, ChannelTolerance),
+        windows: &[ValidationWindow],
+        moved: Option<usize>,
+    ) -> Result<ToleranceFinding, String> {
+        let checks = RecordCheck::of_windows(windows, of_channel).map_err(|error| error.to_string())?;
+        let check = checks.first().ok_or("there are no samples to compare")?;
+        let worst: &ToleranceCheck = check.worst().ok_or("there are no samples to compare")?;
+        let correlation = check.correlation();
+        let on_axis = moved.map(|input| self.on_axis[Pair::new(of_channel.output, input)]);
+        let trend = |correlation| if correlation > 0.0 { Trend::Correct } else { Trend::Opposite };
+        Ok(ToleranceFinding {
+            quantity: tolerance.quantity.clone(),
+            output: tolerance.channel.clone(),
+            integrated: of_channel.integrated,
+            unit: of_channel.unit.clone(),
+            share_inside: check.share_inside(),
+            largest_excess: worst.largest_excess,
+            largest_excess_at_s: worst.largest_excess_at_s,
+            correlation,
+            on_axis,
+            trend: correlation.filter(|_| on_axis == Some(false)).map(trend),
+        })
+    }
+}

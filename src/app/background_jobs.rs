@@ -136,6 +136,10 @@ impl BackgroundJobs {
             |app| needed(app, |need| if let Need::TestAnswers(job) = need { Some(job) } else { None }),
             |app, job, found| app.state.results.test_answers = Some((job, found)),
         );
+        let record_history = JobKind::new(
+            |app| needed(app, |need| if let Need::RecordHistory(job) = need { Some(job) } else { None }),
+            |app, job, found| app.state.results.record_history = Some((job, found)),
+        );
         let variants = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
@@ -172,6 +176,7 @@ impl BackgroundJobs {
             started("couplings", engine(), couplings, replies)?,
             started("requirements", pool, requirements, replies)?,
             started("test input", pool, test_answers, replies)?,
+            started("record in time", pool, record_history, replies)?,
             started("variants", engine(), variants, replies)?,
             started("simulation", pool, simulations, replies)?,
             started("report", engine(), reports, replies)?,

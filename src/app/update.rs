@@ -171,6 +171,10 @@ impl GdcmApp {
             }
             Command::Refuse(why) => self.notify_error(why),
             Command::DismissNotice => self.state.notice = None,
+            Command::ShowTest(shown) => {
+                display.shows_test = shown;
+                display.figures.remove(&View::Requirements);
+            }
             Command::ReadLevels(path) => self.read_levels(&path),
             Command::AskLevels => self.ask_path(DialogPurpose::Levels, String::new()),
             Command::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),

@@ -85,6 +85,8 @@ pub enum Command {
     Assess(AssessedFigures),
     /// Show another page of requirements.
     ShowRequirements(RequirementsPage),
+    /// Over time, show answers to a test input, or to the records.
+    ShowTest(bool),
     /// Choose a file of levels with the desktop's dialog.
     AskLevels,
     /// Take the levels of a file.

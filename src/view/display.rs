@@ -81,6 +81,8 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
+    /// Whether models answer to a test input over time although there are records.
+    pub shows_test: bool,
     /// Which page of requirements is shown.
     pub requirements_page: RequirementsPage,
     /// Its order.

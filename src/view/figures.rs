@@ -7,7 +7,7 @@ use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRe
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
 use super::views::{
-    bode_options, condition_source, net_gain_pairs, shown_couplings, shown_requirements, shown_test_answers,
+    bode_options, condition_source, net_gain_pairs, shown_couplings, shown_over_time, shown_requirements,
 };
 use super::{Command, State, View, named};
 
@@ -62,7 +62,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
     let requirements = shown_requirements(state, kind);
-    let test_answers = shown_test_answers(state, kind);
+    let over_time = shown_over_time(state, kind);
     let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
     Some(FigureRequest {
         measure,
@@ -72,7 +72,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         bode,
         couplings,
         requirements,
-        test_answers,
+        over_time,
         ..usual
     })
 }

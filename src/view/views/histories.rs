@@ -1,48 +1,98 @@
-//! Requirements in time: what the models of the condition shown answer to a step or a doublet of the input in focus (M17.2).
+//! Requirements in time: flight records with the corridors about them and what the models answer, or a step or a doublet where there are
+//! no records (M17.2).
 
 use std::sync::Arc;
 
-use egui::{Label, Ui, Vec2, vec2};
-use gdcm_core::requirements::{TestInput, TestInputShape};
-use gdcm_core::study::{Edit, RequirementSettings, TestAnswers, TestAnswersJob};
+use egui::{Button, CollapsingHeader, Grid, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use gdcm_core::requirements::{TestInput, TestInputShape, ToleranceTable};
+use gdcm_core::study::{
+    Analysis, Edit, HistoryRecord, RecordHistory, RecordHistoryJob, RequirementSettings, TestAnswersJob,
+};
 use gdcm_core::units::number;
-use gdcm_files::figure::{Figure, FigureKind, MarkId};
+use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
 
-use super::{RequirementsPage, View};
+use super::{Need, RequirementsPage, View};
 use crate::view::command::Command;
-use crate::view::controls::number_entry_ui;
+use crate::view::controls::{number_entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::records::RecordsCommand;
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
+use crate::view::table_view::{TableLook, table_grid_ui};
 
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
+/// Part of the height that the table has at first.
+const TABLE_PART: f32 = 0.32;
 
-/// The job of the answers to the test input; none until there is an analysis.
-pub fn test_answers_job(state: &State) -> Option<TestAnswersJob> {
-    let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
-    Some(TestAnswersJob { analysis, condition: state.condition().id(), input: state.display.pair.input })
+/// The record that is shown over time; none where there is none, or a test is shown in its place.
+fn record_job(state: &State) -> Option<RecordHistoryJob> {
+    let analysis = current(state)?;
+    let condition = state.condition().id();
+    let records = state.records.conditions.get(&condition).filter(|_| !state.display.shows_test)?;
+    let row = records.rows.get(records.chosen)?;
+    let record = HistoryRecord { flight: Arc::clone(row.used_flight()?), held_out: row.guess.held_out };
+    Some(RecordHistoryJob { analysis, condition, record, preparation: records.preparation() })
 }
 
-/// The answers to the test input, for a figure of them.
-pub fn shown_test_answers(state: &State, kind: FigureKind) -> Option<Arc<TestAnswers>> {
+fn test_job(state: &State) -> Option<TestAnswersJob> {
+    Some(TestAnswersJob {
+        analysis: current(state)?,
+        condition: state.condition().id(),
+        input: state.display.pair.input,
+    })
+}
+
+fn current(state: &State) -> Option<Arc<Analysis>> {
+    state.results.analysis.clone().filter(|_| state.analysis().is_some())
+}
+
+/// What is to be computed over time.
+pub fn over_time_need(state: &State) -> Option<Need> {
+    record_job(state).map(Need::RecordHistory).or_else(|| test_job(state).map(Need::TestAnswers))
+}
+
+/// What models answer over time, in words why there is nothing; none until it is computed.
+pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
+    match record_job(state) {
+        Some(job) => {
+            let found = state.record_history(&job)?.clone();
+            Some(found.map(|history| OverTime::Record(history, state.display.pair.input)))
+        }
+        None => Some(state.test_answers()?.clone().map(OverTime::Test)),
+    }
+}
+
+/// The same for a figure, where it is shown.
+pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
     let is_shown = kind == FigureKind::Requirements && state.display.requirements_page == RequirementsPage::Histories;
-    state.test_answers().filter(|_| is_shown)?.as_ref().ok().cloned()
+    over_time(state).filter(|_| is_shown)?.ok()
 }
 
-/// The test, and the answers of the models.
+/// What is flown, or the test, and the answers of the models.
 pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    test_ui(ui, state, palette, commands);
-    let figure: Figure = match state.test_answers() {
-        Some(Ok(_)) => figure_of(state, View::Requirements).unwrap_or_default(),
+    subject_ui(ui, state, palette, commands);
+    let found = match over_time(state) {
+        Some(Ok(found)) => found,
         Some(Err(why)) => return drop(ui.label(palette.small_warning(why))),
         None => return drop(ui.label(palette.dim(state.results.absence()))),
     };
+    if let OverTime::Record(history, _) = &found {
+        restore_panel_size(ui, "tolerances");
+        let size = TABLE_PART * ui.available_height();
+        let panel = Panel::bottom("tolerances").resizable(true).default_size(size).min_size(60.0);
+        panel.show(ui, |ui| tolerances_ui(ui, state, history, palette, commands));
+    }
+    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
     figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let accented = match &found {
+        OverTime::Test(_) => Some(1 + state.display.pair.output),
+        OverTime::Record(..) => None,
+    };
     let scene = FigureScene {
         name: "requirements in time",
         figure: &figure,
@@ -51,13 +101,104 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         columns: &[],
         zooms: true,
         is_compact: false,
-        accented: Some(1 + state.display.pair.output),
+        accented,
         least: LEAST_PLOT,
         message: "There is nothing to show",
         words: (&HistoryWords { figure: &figure }, 0),
     };
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
+}
+
+/// A record of the condition, or a test input.
+fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let records = state.records.conditions.get(&state.condition().id());
+    let rows = records.into_iter().flat_map(|records| records.used_rows());
+    let mut choices: Vec<(Option<usize>, &str, &str)> =
+        rows.map(|(index, row)| (Some(index), row.table.name.as_str(), "A flight record of this condition")).collect();
+    if choices.is_empty() {
+        let words = "No flight record of this condition is open (view Records): a test input in its place.";
+        ui.label(palette.small(words));
+    } else {
+        choices.push((None, "test input", "A step or a doublet of the input in focus, from rest"));
+        let shown = records.map(|records| records.chosen).filter(|_| !state.display.shows_test);
+        let mut chosen = shown;
+        choice_ui(ui, "What models answer to", &mut chosen, &choices);
+        if chosen != shown {
+            commands.push(Command::ShowTest(chosen.is_none()));
+            commands.extend(chosen.map(|index| RecordsCommand::Choose(index).into()));
+        }
+    }
+    if record_job(state).is_none() {
+        test_ui(ui, state, palette, commands);
+    }
+}
+
+/// Share of time inside and largest excess of every quantity and model; and the table of tolerances, to be edited.
+fn tolerances_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    history: &RecordHistory,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let table = history.table();
+    let is_outside = |row: usize| table.rows[row][5] != "none";
+    let color = |row: usize, column: usize| match column {
+        4 | 5 => Some(if is_outside(row) { palette.warning } else { palette.good }),
+        _ => None,
+    };
+    let look = TableLook { color: &color, selected: &|_| false };
+    ScrollArea::vertical().id_salt("tolerances").auto_shrink(false).show(ui, |ui| {
+        let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
+        title.show(ui, |ui| edited_tolerances_ui(ui, state, palette, commands));
+        ui.label(palette.small(&table.title));
+        let mut sorting = state.display.requirements_sorting;
+        table_grid_ui(ui, &table, &mut sorting, &look, palette, commands);
+        state.display.requirements_sorting = sorting;
+    });
+}
+
+/// Every row of the table of tolerances, in fields.
+fn edited_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let table = &state.study.requirements.tolerances;
+    let decided = |tolerances: ToleranceTable| {
+        let settings = RequirementSettings { tolerances, ..RequirementSettings::clone(&state.study.requirements) };
+        Command::from(Edit::SetRequirements("tolerances", Arc::new(settings)))
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(palette.small(format!("Source: {}", table.source())));
+        let is_default = *table == ToleranceTable::default();
+        if ui.add_enabled(!is_default, Button::new("Default tolerances").small()).clicked() {
+            commands.push(decided(ToleranceTable::default()));
+        }
+    });
+    let mut rows = table.rows().to_vec();
+    let mut is_changed = false;
+    Grid::new("tolerances in fields").num_columns(5).show(ui, |ui| {
+        for (index, row) in rows.iter_mut().enumerate() {
+            let number_of = index + 1;
+            ui.label(palette.small(format!("{} of {}", row.quantity, row.channel)));
+            let name = format!("Absolute tolerance {number_of}");
+            if let Some(Some(value)) = number_entry_ui(ui, &name, &number(row.absolute), "", 56.0, commands) {
+                (row.absolute, is_changed) = (value, true);
+            }
+            ui.label(palette.small(&row.unit));
+            let name = format!("Relative tolerance {number_of}");
+            let percent = row.relative.map_or_else(String::new, |part| number(100.0 * part));
+            if let Some(value) = number_entry_ui(ui, &name, &percent, "none", 56.0, commands) {
+                (row.relative, is_changed) = (value.map(|percent| 0.01 * percent), true);
+            }
+            ui.label(palette.small(format!("% of the change · {}", row.entry)));
+            ui.end_row();
+        }
+    });
+    if is_changed {
+        commands.push(match ToleranceTable::new("edited", rows) {
+            Ok(table) => decided(table),
+            Err(why) => Command::Refuse(why.to_string()),
+        });
+    }
 }
 
 /// Course, size and duration of the test input.

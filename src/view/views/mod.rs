@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use egui::Ui;
 use gdcm_core::study::{
-    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RequirementsJob, SimulationJob, TestAnswersJob,
-    VariantJob,
+    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
+    SimulationJob, TestAnswersJob, VariantJob,
 };
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
@@ -243,7 +243,7 @@ impl View {
                 tools_width: 130.0,
                 is_of_all_conditions: true,
                 needs: |state| match state.display.requirements_page {
-                    RequirementsPage::Histories => test_answers_job(state).map(Need::TestAnswers).into_iter().collect(),
+                    RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
                     _ => requirements_job(state).map(Need::Requirements).into_iter().collect(),
                 },
                 figure: Some(FigureKind::Requirements),
@@ -368,4 +368,6 @@ pub enum Need {
     Requirements(RequirementsJob),
     /// What models answer to the test input.
     TestAnswers(TestAnswersJob),
+    /// What they answer to a flight record.
+    RecordHistory(RecordHistoryJob),
 }

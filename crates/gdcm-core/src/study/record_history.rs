@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::dataset::ConditionId;
 use crate::executor::Executor;
-use crate::identification::{Preparation, ValidationSettings, segments_of, validate};
+use crate::identification::{FlightRecord, Preparation, ValidationSettings, segments_of, validate};
 use crate::requirements::{RecordCheck, Tolerance};
 use crate::units::telling;
 
@@ -25,7 +25,7 @@ pub struct QuantityHistory {
 }
 
 /// One record against the tolerances.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RecordHistory {
     /// The condition.
     pub condition: ConditionId,
@@ -33,10 +33,19 @@ pub struct RecordHistory {
     pub record: String,
     /// Whether the identified models were kept from it.
     pub held_out: bool,
+    /// The record, in the units of the dataset's channels.
+    pub flight: Arc<FlightRecord>,
     /// Each row of the table that can be applied.
     pub quantities: Vec<QuantityHistory>,
     /// In words what is not compared, and why.
     pub missing: Vec<String>,
+}
+
+impl PartialEq for RecordHistory {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.flight, &other.flight)
+            && (self.condition, &self.quantities, &self.missing) == (other.condition, &other.quantities, &other.missing)
+    }
 }
 
 impl RecordHistory {
@@ -129,7 +138,8 @@ impl RecordHistoryJob {
             quantities.push(QuantityHistory { tolerance: tolerance.clone(), output, unit, models });
         }
         let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
-        Ok(RecordHistory { condition: self.condition, record, held_out, quantities, missing })
+        let flight = Arc::clone(&self.record.flight);
+        Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })
     }
 }
 

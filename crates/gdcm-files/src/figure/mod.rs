@@ -23,8 +23,8 @@ use std::sync::Arc;
 
 use gdcm_core::dataset::{ModelId, Pair};
 use gdcm_core::study::{
-    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, Requirements,
-    TestAnswers, Unobserved,
+    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, RecordHistory,
+    Requirements, TestAnswers, Unobserved,
 };
 
 mod assessment;
@@ -40,6 +40,7 @@ mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
 mod gains;
+mod histories;
 mod label_places;
 mod layout;
 mod leads;
@@ -50,7 +51,6 @@ mod requirements;
 mod responses;
 mod role;
 mod tables;
-mod test_answers;
 mod ticks;
 mod units;
 
@@ -66,6 +66,7 @@ pub use error::*;
 pub use evidence::*;
 pub use figure::*;
 pub use gains::*;
+pub use histories::*;
 pub use label_places::*;
 pub use layout::*;
 pub use leads::*;
@@ -75,7 +76,6 @@ pub use poles::*;
 pub use requirements::*;
 pub use responses::*;
 pub use role::*;
-pub use test_answers::*;
 pub use ticks::*;
 pub use units::*;
 
@@ -154,6 +154,15 @@ impl FigureKind {
     }
 }
 
+/// What models answer over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverTime {
+    /// To a test input.
+    Test(Arc<TestAnswers>),
+    /// To a flight record, of which the input of this index is drawn.
+    Record(Arc<RecordHistory>, usize),
+}
+
 /// Which figure is wanted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureRequest {
@@ -177,8 +186,8 @@ pub struct FigureRequest {
     pub couplings: Option<Arc<CouplingsAssessment>>,
     /// What a qualification asks, where that is shown.
     pub requirements: Option<Arc<Requirements>>,
-    /// What models answer to a test input, where that is shown in place of bandwidths.
-    pub test_answers: Option<Arc<TestAnswers>>,
+    /// What is shown over time in place of bandwidths.
+    pub over_time: Option<OverTime>,
 }
 
 impl FigureRequest {
@@ -197,7 +206,7 @@ impl FigureRequest {
             bode,
             couplings: None,
             requirements: None,
-            test_answers: None,
+            over_time: None,
         }
     }
 
@@ -231,8 +240,12 @@ impl FigureRequest {
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
             FigureKind::Requirements => {
                 let study = &analysis?.study;
-                if let Some(answers) = &self.test_answers {
-                    return Some(test_answers_figure(answers, &study.dataset));
+                match &self.over_time {
+                    Some(OverTime::Test(answers)) => return Some(test_answers_figure(answers, &study.dataset)),
+                    Some(OverTime::Record(history, input)) => {
+                        return Some(record_history_figure(history, &study.dataset, *input));
+                    }
+                    None => {}
                 }
                 requirements_figure(self.requirements.as_deref()?, &study.dataset, &study.requirements.levels)
             }

@@ -15,6 +15,8 @@ use super::{Command, State, View, named};
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let bars = !state.display.hide_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
+    // What requirements are asked with has no part in the live answer, which may be older.
+    let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
     let analysis = with_bars.as_ref();
     let source = condition_source(state);
     request(state, view)?.figure(analysis, source.as_ref())

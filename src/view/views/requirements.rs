@@ -61,7 +61,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 /// The job of what is shown; none until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
-    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned() })
+    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned(), settings: Arc::clone(&state.study.requirements) })
 }
 
 /// The page that is chosen, below what has to be known of all of them.

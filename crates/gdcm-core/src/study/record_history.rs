@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::dataset::ConditionId;
 use crate::executor::Executor;
 use crate::identification::{FlightRecord, Preparation, ValidationSettings, segments_of, validate};
-use crate::requirements::{RecordCheck, Tolerance};
+use crate::requirements::{RecordCheck, Tolerance, ToleranceTable};
 use crate::units::telling;
 
 use super::time_histories::LEAST_PIECE_S;
@@ -87,13 +87,14 @@ pub struct RecordHistoryJob {
     pub record: HistoryRecord,
     /// How its channels are prepared.
     pub preparation: Preparation,
+    /// The tolerances.
+    pub tolerances: ToleranceTable,
 }
 
 impl PartialEq for RecordHistoryJob {
     fn eq(&self, other: &Self) -> bool {
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis
-            && (self.condition, &self.record, &self.preparation) == (other.condition, &other.record, &other.preparation)
+        let key = |of: &Self| (of.condition, of.record.clone(), of.preparation.clone(), of.tolerances.clone());
+        Arc::ptr_eq(&self.analysis, &other.analysis) && key(self) == key(other)
     }
 }
 
@@ -120,7 +121,7 @@ impl RecordHistoryJob {
             }
         }
         let mut quantities = Vec::new();
-        for tolerance in self.analysis.study.requirements.tolerances.rows() {
+        for tolerance in self.tolerances.rows() {
             let of_channel = match tolerance.of_outputs(self.analysis.study.dataset.outputs()) {
                 Ok(of_channel) => of_channel,
                 Err(why) => {

@@ -1,10 +1,12 @@
 //! What requirements are asked with: decisions that no correction depends on (M17).
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use crate::dataset::Dataset;
+use super::Analysis;
 use crate::requirements::{CommandType, LevelBoundaries, ModeToleranceTable, TestInput, ToleranceTable};
 
 /// What requirements are asked with; a part that is left out is the default.
@@ -30,6 +32,15 @@ pub struct RequirementSettings {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
+}
+
+impl Analysis {
+    /// The same analysis, of which requirements are asked with other settings.
+    pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
+        let mut analysis = self.clone();
+        analysis.study.requirements = Arc::clone(settings);
+        analysis
+    }
 }
 
 impl RequirementSettings {

@@ -35,13 +35,14 @@ pub struct TestAnswers {
 }
 
 impl TestAnswers {
-    fn of(analysis: &Analysis, condition: ConditionId, input: usize, executor: &dyn Executor) -> Result<Self, String> {
+    fn of(job: &TestAnswersJob, executor: &dyn Executor) -> Result<Self, String> {
+        let TestAnswersJob { analysis, condition, input, test } = job;
+        let (condition, input) = (*condition, *input);
         let result = match analysis.conditions.get(&condition) {
             Some(Ok(result)) => result,
             Some(Err(failure)) => return Err(failure.to_string()),
             None => return Err("it was not analysed".to_owned()),
         };
-        let test = analysis.study.requirements.test;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answer = |role: &RequirementRole| {
             let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
@@ -50,7 +51,7 @@ impl TestAnswers {
         let answers = each(executor, &RequirementRole::ALL, answer);
         let signal = test.signal(sample_time_s, STEPS + 1);
         let models = RequirementRole::ALL.into_iter().zip(answers).collect();
-        Ok(Self { condition, input, test, sample_time_s, signal, models })
+        Ok(Self { condition, input, test: *test, sample_time_s, signal, models })
     }
 
     /// The times of the samples \[s\].
@@ -68,11 +69,14 @@ pub struct TestAnswersJob {
     pub condition: ConditionId,
     /// Index of the input that is moved.
     pub input: usize,
+    /// How it is moved.
+    pub test: TestInput,
 }
 
 impl PartialEq for TestAnswersJob {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.analysis, &other.analysis) && (self.condition, self.input) == (other.condition, other.input)
+        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
+        same_analysis && (self.condition, self.input, self.test) == (other.condition, other.input, other.test)
     }
 }
 
@@ -83,7 +87,7 @@ impl Job for TestAnswersJob {
     type Output = Result<Arc<TestAnswers>, String>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let found = TestAnswers::of(&self.analysis, self.condition, self.input, executor.as_ref()).map(Arc::new);
+        let found = TestAnswers::of(self, executor.as_ref()).map(Arc::new);
         if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
     }
 }
@@ -95,14 +99,12 @@ mod tests {
     use crate::dataset::BundleKind;
     use crate::requirements::TestInputShape;
     use crate::study::couplings_example_tests::EXAMPLE;
-    use crate::study::{Edit, RequirementSettings, Unobserved};
+    use crate::study::Unobserved;
 
     fn answers(test: TestInput) -> TestAnswers {
-        let mut analysis = EXAMPLE.analysis.clone();
-        let settings = RequirementSettings { test, ..RequirementSettings::default() };
-        analysis.study.apply(&Edit::SetRequirements("test", Arc::new(settings))).unwrap();
+        let analysis = EXAMPLE.analysis.clone();
         let condition = *analysis.conditions.keys().next().unwrap();
-        let job = TestAnswersJob { analysis: Arc::new(analysis), condition, input: 1 };
+        let job = TestAnswersJob { analysis: Arc::new(analysis), condition, input: 1, test };
         let executor: Box<dyn Executor> = Box::new(crate::executor::Sequential);
         TestAnswers::clone(&job.run(&mut { executor }, &Unobserved).unwrap().unwrap())
     }

@@ -132,6 +132,14 @@ impl BackgroundJobs {
             |app| needed(app, |need| if let Need::Requirements(job) = need { Some(job) } else { None }),
             |app, job, found| app.state.results.requirements = Some((job, found)),
         );
+        let test_answers = JobKind::new(
+            |app| needed(app, |need| if let Need::TestAnswers(job) = need { Some(job) } else { None }),
+            |app, job, found| app.state.results.test_answers = Some((job, found)),
+        );
+        let record_history = JobKind::new(
+            |app| needed(app, |need| if let Need::RecordHistory(job) = need { Some(job) } else { None }),
+            |app, job, found| app.state.results.record_history = Some((job, found)),
+        );
         let variants = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
@@ -167,6 +175,8 @@ impl BackgroundJobs {
             started("conditions", || (), across, replies)?,
             started("couplings", engine(), couplings, replies)?,
             started("requirements", pool, requirements, replies)?,
+            started("test input", pool, test_answers, replies)?,
+            started("record in time", pool, record_history, replies)?,
             started("variants", engine(), variants, replies)?,
             started("simulation", pool, simulations, replies)?,
             started("report", engine(), reports, replies)?,

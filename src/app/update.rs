@@ -6,7 +6,8 @@ use gdcm_core::message_text::sanitized;
 use crate::view::plot::{FigureView, Pane};
 use crate::view::views::PairSet;
 use crate::view::{
-    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, focus_field, leave_region, table_of,
+    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field, leave_region,
+    table_of,
 };
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Edit, Study};
@@ -113,8 +114,10 @@ impl GdcmApp {
                 display.across.request_refit();
             }
             Command::Assess(figures) => display.assessed = figures,
-            Command::ShowRequirements(table) => {
-                (display.requirements_table, display.requirements_sorting) = (table, Default::default());
+            Command::ShowRequirements(page) => {
+                (display.requirements_page, display.requirements_sorting) = (page, Default::default());
+                // Another page has other plots.
+                display.figures.remove(&View::Requirements);
             }
             Command::SetFrequencyUnit(unit) => display.unit = unit,
             Command::Curves(command) => show_curves(display, command),
@@ -168,6 +171,12 @@ impl GdcmApp {
             }
             Command::Refuse(why) => self.notify_error(why),
             Command::DismissNotice => self.state.notice = None,
+            Command::ShowTest(shown) => {
+                display.shows_test = shown;
+                display.figures.remove(&View::Requirements);
+            }
+            Command::ReadLevels(path) => self.read_levels(&path),
+            Command::AskLevels => self.ask_path(DialogPurpose::Levels, String::new()),
             Command::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),
             Command::AskSaveStudy => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
             Command::AskExportFolder => self.ask_path(DialogPurpose::ExportFolder, String::new()),

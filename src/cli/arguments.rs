@@ -221,6 +221,12 @@ pub struct StudyArguments {
     /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
     pub sign: Vec<SaidSign>,
+    /// Outputs whose attitude the stick commands, separated by commas: their bandwidth is that of the phase alone (ADS-33E-PRF).
+    #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
+    pub attitude_command: Vec<String>,
+    /// File of the levels that bandwidth and phase delay are drawn with (docs/requirements.md).
+    #[arg(long, value_name = "FILE")]
+    pub levels: Option<PathBuf>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
@@ -313,7 +319,7 @@ pub struct FigureArguments {
     /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
     #[arg(long, value_name = "PAIR")]
     pub zeros: Option<PairList>,
-    /// Among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
+    /// About the identified response, and among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
     #[arg(long)]
     pub muad: bool,
     /// Width on paper: one column of a journal (84 mm), or both (174 mm).

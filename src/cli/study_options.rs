@@ -6,8 +6,8 @@ use crate::executor::Pool;
 use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
-use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, Study};
-use gdcm_files::{LoadedDataset, OutputSet, embedded_example};
+use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
+use gdcm_files::{LoadedDataset, OutputSet, embedded_example, read_levels};
 
 use super::open as open_file;
 use super::{
@@ -32,7 +32,7 @@ pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study
         caution(&format!("{}: {words}", loaded.origin));
     }
     take_options(&mut study, arguments)?;
-    let inputs = arguments.file.iter().cloned().chain(loaded.origin.file()).collect();
+    let inputs = arguments.file.iter().chain(&arguments.levels).cloned().chain(loaded.origin.file()).collect();
     Ok((study, loaded, OutputSet::new(existing(force), inputs)))
 }
 
@@ -97,11 +97,38 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
         study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
     }
+    require(study, arguments)?;
     check_second_variable(study)?;
     if let Some(list) = &arguments.on {
         hold(study, list)?;
     }
     arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+}
+
+/// Asks requirements with what the options say, over what the study says itself.
+fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
+    let mut settings = RequirementSettings::clone(&study.requirements);
+    let (_, outputs) = study.dataset.names_of_channels();
+    for name in &arguments.attitude_command {
+        if !outputs.contains(name) {
+            let reason = sanitized(&format!("expected one of {}, found {name}", outputs.join(", ")));
+            return Err(Failure::Option { option: "--attitude-command", reason });
+        }
+        settings.attitude_command.insert(name.clone());
+    }
+    if let Some(path) = &arguments.levels {
+        settings.levels = read_levels(path)?;
+        let unknown = settings.levels.unknown_axes(&outputs);
+        if !unknown.is_empty() {
+            let (unknown, outputs) = (unknown.join(", "), outputs.join(", "));
+            caution(&sanitized(&format!("levels of {unknown} are drawn nowhere: outputs are {outputs}")));
+        }
+    }
+    if settings != *study.requirements {
+        let edit = Edit::SetRequirements("options", Arc::new(settings));
+        study.apply(&edit).map_err(Failure::refused("--levels"))?;
+    }
+    Ok(())
 }
 
 /// Refuses a second variable that a scheduled condition does not say: the schedule would be missing after all the work.

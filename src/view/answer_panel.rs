@@ -122,12 +122,47 @@ fn text_width(ui: &Ui, text: &str, size: f32) -> f32 {
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+    // What exports is the primary button at the foot.
+    let is_at_foot = |step: &&Step| step.command == export();
+    let primary = verdict.steps.first().filter(|step| !is_at_foot(step));
+    let links: Vec<Step> = verdict.steps.iter().skip(1).cloned().chain(notes_step(verdict)).collect();
+    match (&verdict.caution, primary) {
+        // A price and something to decide: each has a line of its own.
+        (Some(caution), Some(_)) => {
+            let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(is_of_reasons);
+            line_ui(ui, (Some(caution), None, &notes, ""), palette, commands);
+            line_ui(ui, (None, primary, &links, &verdict.note), palette, commands);
+        }
+        (caution, primary) => {
+            line_ui(ui, (caution.as_deref(), primary, &links, &verdict.note), palette, commands);
+        }
+    }
+}
+
+fn is_of_reasons(step: &Step) -> bool {
+    step.command == Command::ShowSheet(Some(Sheet::Reasons))
+}
+
+/// The way to the list of reasons, where no other step leads there.
+fn notes_step(verdict: &Verdict) -> Option<Step> {
+    let is_offered = verdict.steps.iter().any(is_of_reasons);
+    let notes = Step { label: format!("{} notes", verdict.reasons), command: Command::ShowSheet(Some(Sheet::Reasons)) };
+    (!is_offered && verdict.reasons > 0).then_some(notes)
+}
+
+/// A caution, a primary button, links, and words in the room that is left; `⚠ +21 dB above 12 rad/s` where the caution has no more.
+fn line_ui(
+    ui: &mut Ui,
+    (caution, primary, links, note): (Option<&str>, Option<&Step>, &[Step], &str),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
-        ui.set_min_height(28.0);
-        if let Some(caution) = &verdict.caution {
-            let steps = verdict.steps.iter().filter(|step| step.command != export());
-            let links: f32 = steps.map(|step| text_width(ui, &step.label, BODY_SIZE) + 24.0).sum();
-            let room = ui.available_width() - links;
+        ui.set_min_height(if primary.is_some() || caution.is_none() { 28.0 } else { 22.0 });
+        if let Some(caution) = caution {
+            let width: f32 =
+                primary.into_iter().chain(links).map(|of| text_width(ui, &of.label, BODY_SIZE) + 24.0).sum();
+            let room = ui.available_width() - width;
             let whole = format!("⚠ {caution}");
             let fits = text_width(ui, &whole, BODY_SIZE) <= room;
             let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
@@ -137,25 +172,20 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
                 ui.add(egui::Label::new(text).truncate()).on_hover_text(caution);
             });
         }
-        let mut steps = verdict.steps.iter();
-        // What exports is the primary button at the foot.
-        let first = steps.next().filter(|step| step.command != export());
-        if let Some(step) = first {
+        if let Some(step) = primary {
             primary_ui(ui, step, palette, commands);
         }
-        for step in steps {
+        let (at_end, links): (Vec<&Step>, Vec<&Step>) = links.iter().partition(|step| step.label.ends_with(" notes"));
+        for step in links {
             link_ui(ui, step, palette, commands);
         }
-        let reasons = Command::ShowSheet(Some(Sheet::Reasons));
-        let is_offered = verdict.steps.iter().any(|step| step.command == reasons);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if !is_offered && verdict.reasons > 0 {
-                let step = Step { label: format!("{} notes", verdict.reasons), command: reasons };
-                link_ui(ui, &step, palette, commands);
+            for step in at_end {
+                link_ui(ui, step, palette, commands);
             }
-            if !verdict.note.is_empty() {
+            if !note.is_empty() {
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(egui::Label::new(palette.small(&verdict.note)).truncate());
+                    ui.add(egui::Label::new(palette.small(note)).truncate()).on_hover_text(note);
                 });
             }
         });

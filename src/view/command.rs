@@ -15,7 +15,7 @@ use super::plot::{Across, FrequencyUnit, Measure};
 use super::records::RecordsCommand;
 use super::start_page::OpensWith;
 use super::views::PairSet;
-use super::views::{AssessedFigures, RequirementsTable};
+use super::views::{AssessedFigures, RequirementsPage};
 use super::{Bar, CurveCommand, PlotStyle, Sheet, TableKind, View, ViewGroup};
 
 /// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
@@ -83,8 +83,14 @@ pub enum Command {
     ShowAcross(AcrossRole),
     /// Assess something else, or show it in another form.
     Assess(AssessedFigures),
-    /// Show another table of requirements.
-    ShowRequirements(RequirementsTable),
+    /// Show another page of requirements.
+    ShowRequirements(RequirementsPage),
+    /// Over time, show answers to a test input, or to the records.
+    ShowTest(bool),
+    /// Choose a file of levels with the desktop's dialog.
+    AskLevels,
+    /// Take the levels of a file.
+    ReadLevels(PathBuf),
     /// Show how a value was computed, or put that away.
     Explain(Option<ExplainTarget>),
     /// Read frequencies in another unit.

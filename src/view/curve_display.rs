@@ -46,7 +46,7 @@ impl Default for CurveDisplay {
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),
             // Couplings alone are drawn on wish.
-            hidden_roles: BTreeSet::from([Role::Coupled]),
+            hidden_roles: Self::hidden_at_first(),
             hidden_models: BTreeSet::new(),
             turns: BTreeMap::new(),
             cursor: None,
@@ -79,7 +79,7 @@ pub enum CurveCommand {
     ShowBands(bool),
     /// Do not draw a model.
     HideModel(ModelId),
-    /// Draw every model and every role.
+    /// Draw every model, and the roles that are drawn at first.
     ShowHidden,
     /// Move the phase of a curve by whole turns: condition, response, curve, turns up.
     Turn(ConditionId, Pair, CurveId, i32),
@@ -101,6 +101,11 @@ impl CurveDisplay {
     /// Marked frequencies: two, of which the difference is told.
     const MOST_PINNED: usize = 2;
 
+    /// Roles that are drawn only when they are asked for: the couplings alone are a step on the way, not a result.
+    pub fn hidden_at_first() -> BTreeSet<Role> {
+        BTreeSet::from([Role::Coupled])
+    }
+
     /// Carries a wish out.
     pub fn carry_out(&mut self, command: CurveCommand) {
         match command {
@@ -114,7 +119,7 @@ impl CurveDisplay {
             }
             CurveCommand::ShowRoleAlone(role) => {
                 let others: BTreeSet<Role> = Role::ALL.into_iter().filter(|other| *other != role).collect();
-                self.hidden_roles = if self.hidden_roles == others { BTreeSet::new() } else { others };
+                self.hidden_roles = if self.hidden_roles == others { Self::hidden_at_first() } else { others };
             }
             CurveCommand::RaiseRole(role) => self.raised = (self.raised != Some(role)).then_some(role),
             CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
@@ -123,7 +128,7 @@ impl CurveDisplay {
             }
             CurveCommand::ShowHidden => {
                 self.hidden_models.clear();
-                self.hidden_roles.clear();
+                self.hidden_roles = Self::hidden_at_first();
             }
             CurveCommand::Turn(condition, pair, curve, by) => {
                 let turns = self.turns.entry((condition, pair, curve)).or_default();
@@ -225,7 +230,8 @@ fn unit_entries(state: &State) -> Vec<Entry> {
         ),
         entry(
             if curves.shows_muad { "Hide what a pilot does not notice" } else { "Show what a pilot does not notice" },
-            "Envelopes of maximum unnoticeable added dynamics in the plot of errors, and where the mismatch leaves them",
+            "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode, and in the plot of errors, with where \
+             the mismatch leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
         ),
     ]
@@ -250,15 +256,19 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
     let is_isolated = display.isolated.is_some() || !display.curves.selected.is_empty();
     let is_hidden = !(display.curves.hidden_models.is_empty()
-        && display.curves.hidden_roles.iter().all(|role| *role == Role::Coupled));
+        && display.curves.hidden_roles.is_subset(&CurveDisplay::hidden_at_first()));
     let isolation = Entry::new("End isolation and selection", "Show every model, select none", Command::EndIsolation);
     vec![
         // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
         // something to end here.
         if is_isolated { isolation.free_key(Key::Escape) } else { isolation.enabled(false) }.within(Menu::Curves, 3),
-        Entry::new("Show hidden curves", "Draw every model and every role", CurveCommand::ShowHidden.into())
-            .within(Menu::Curves, 3)
-            .enabled(is_hidden),
+        Entry::new(
+            "Show hidden curves",
+            "Draw every model, and the roles that are drawn at first",
+            CurveCommand::ShowHidden.into(),
+        )
+        .within(Menu::Curves, 3)
+        .enabled(is_hidden),
         Entry::new(
             "Mark the frequency under the pointer",
             "In every plot over frequency; two marks show what changes between them",

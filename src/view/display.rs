@@ -15,7 +15,7 @@ use super::plot::{
     PhaseUnit, Role,
 };
 use super::start_page::OpensWith;
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsTable, View};
+use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View};
 use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
@@ -81,8 +81,10 @@ pub struct Display {
     pub assessed: AssessedFigures,
     /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
-    /// Which table of requirements is shown.
-    pub requirements_table: RequirementsTable,
+    /// Whether models answer to a test input over time although there are records.
+    pub shows_test: bool,
+    /// Which page of requirements is shown.
+    pub requirements_page: RequirementsPage,
     /// Its order.
     pub requirements_sorting: Sorting,
     /// Whether the plots of gains show no error bars and bands.
@@ -158,7 +160,7 @@ pub struct Preferences {
     pub phase: PhaseUnit,
     /// How differences of phases are drawn.
     pub phase_error: PhaseErrorUnit,
-    /// Roles whose curves are not drawn.
+    /// Roles that are hidden or shown otherwise than at first, whichever later versions hide at first.
     pub hidden_roles: BTreeSet<Role>,
     /// Whether the plot of errors shows what a pilot does not notice.
     pub shows_muad: bool,
@@ -181,7 +183,7 @@ impl Preferences {
             magnitude: display.curves.magnitude,
             phase: display.curves.phase,
             phase_error: display.curves.phase_error,
-            hidden_roles: display.curves.hidden_roles.clone(),
+            hidden_roles: &display.curves.hidden_roles ^ &CurveDisplay::hidden_at_first(),
             shows_muad: display.curves.shows_muad,
             shows_bands: display.curves.shows_bands,
             lists_no_values: !display.curves.lists_values,
@@ -198,7 +200,7 @@ impl Preferences {
         display.curves.magnitude = self.magnitude;
         display.curves.phase = self.phase;
         display.curves.phase_error = self.phase_error;
-        display.curves.hidden_roles.clone_from(&self.hidden_roles);
+        display.curves.hidden_roles = &self.hidden_roles ^ &CurveDisplay::hidden_at_first();
         display.curves.shows_muad = self.shows_muad;
         display.curves.shows_bands = self.shows_bands;
         display.curves.lists_values = !self.lists_no_values;

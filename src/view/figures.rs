@@ -6,13 +6,17 @@ use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRe
 
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
-use super::views::{bode_options, condition_source, net_gain_pairs, shown_couplings, shown_requirements};
+use super::views::{
+    bode_options, condition_source, net_gain_pairs, shown_couplings, shown_over_time, shown_requirements,
+};
 use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let bars = !state.display.hide_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
+    // What requirements are asked with has no part in the live answer, which may be older.
+    let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
     let analysis = with_bars.as_ref();
     let source = condition_source(state);
     request(state, view)?.figure(analysis, source.as_ref())
@@ -60,6 +64,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
     let requirements = shown_requirements(state, kind);
+    let over_time = shown_over_time(state, kind);
     let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
     Some(FigureRequest {
         measure,
@@ -69,6 +74,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         bode,
         couplings,
         requirements,
+        over_time,
         ..usual
     })
 }

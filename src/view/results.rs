@@ -7,8 +7,9 @@ use gdcm_core::dataset::{ConditionId, Dataset};
 use gdcm_core::identification::Validation;
 use gdcm_core::study::{
     AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable, ConditionAnalysis,
-    ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, ModesJob, Requirements,
-    RequirementsJob, SimulationJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
+    ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, ModesJob, RecordHistory,
+    RecordHistoryJob, Requirements, RequirementsJob, SimulationJob, TestAnswers, TestAnswersJob, Toggles, TogglesJob,
+    Uncertainty, UncertaintyJob, VariantJob,
 };
 
 /// The result of the condition shown, ahead of the others'.
@@ -84,6 +85,10 @@ pub struct Results {
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
     /// What a qualification asks, and of what; see [`super::state::State::requirements`].
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
+    /// What models answer to the test input, and of which condition; see [`super::state::State::test_answers`].
+    pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
+    /// One record against the tolerances; see [`super::state::State::record_history`].
+    pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Models against a record in time, or in words why not.

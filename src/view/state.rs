@@ -7,7 +7,8 @@ use std::sync::Arc;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
     AcrossCurves, Analysis, AssessedCouplings, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModes, CouplingsJob, Difference, History, Requirements, Study, Table, Toggles, Uncertainty,
+    ConditionModes, CouplingsJob, Difference, History, RecordHistory, RecordHistoryJob, Requirements, Study, Table,
+    TestAnswers, Toggles, Uncertainty,
 };
 use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_files::ExportFormat;
@@ -235,6 +236,20 @@ impl State {
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
         let (job, found) = self.results.requirements.as_ref()?;
         Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset).then_some(found)
+    }
+
+    /// What the models of the condition shown answer to the test input, in words why there is nothing; of an older analysis of the same
+    /// condition until it is there.
+    pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
+        let (job, found) = self.results.test_answers.as_ref()?;
+        let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
+        (of_this && (job.condition, job.input) == (self.condition().id(), self.display.pair.input)).then_some(found)
+    }
+
+    /// The record of a job against the tolerances, in words why there is nothing; of an older analysis until it is there.
+    pub fn record_history(&self, job: &RecordHistoryJob) -> Option<&Result<Arc<RecordHistory>, String>> {
+        let (known, found) = self.results.record_history.as_ref()?;
+        (known.condition == job.condition && known.record == job.record).then_some(found)
     }
 
     /// What couplings do to the study as it is; those of older settings until new ones are there.

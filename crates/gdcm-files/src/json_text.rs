@@ -92,7 +92,7 @@ fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
 }
 
 /// Puts serde_json's complaint into the engineer's words.
-fn json_error(text: &[u8], path: &Path, place: Location, error: &serde_json::Error) -> FileError {
+pub(super) fn json_error(text: &[u8], path: &Path, place: Location, error: &serde_json::Error) -> FileError {
     let (line, column) = (error.line(), error.column());
     let full = error.to_string();
     let reason = full.rsplit_once(" at line ").map_or(full.as_str(), |(reason, _)| reason).to_owned();

@@ -29,6 +29,7 @@ mod recognise;
 mod record_files;
 mod recovery_file;
 mod report_file;
+mod requirement_tables;
 mod requirements_file;
 mod rules_file;
 mod source;
@@ -68,6 +69,7 @@ pub use record_files::{
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, assessment_sentence, report, save_report};
+pub use requirement_tables::read_levels;
 pub use requirements_file::{REQUIREMENT_FILES, requirement_paths, write_requirements};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};

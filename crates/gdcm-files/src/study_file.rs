@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use gdcm_core::dataset::{Condition, ConditionId, Dataset, Location};
 use gdcm_core::study::{
-    AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, ResponseNames, Settings, Study,
-    TurnedChannel,
+    AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, RequirementSettings, ResponseNames,
+    Settings, Study, TurnedChannel,
 };
 use gdcm_core::whole_number::whole;
 
@@ -63,6 +63,9 @@ struct StudyText {
     /// Channels whose models are turned; absent where there are none.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CHANNELS, _, _>")]
     signs: Vec<TurnedChannel>,
+    /// What requirements are asked with; absent where nothing of it was decided.
+    #[serde(default, skip_serializing_if = "is_default")]
+    requirements: RequirementSettings,
     /// Decisions kept under names; absent in studies of older programs.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_VARIANTS, _, _>")]
     variants: Vec<VariantText>,
@@ -146,9 +149,14 @@ impl StudyText {
             conditions: ConditionText::all(study),
             taken: taken.collect(),
             signs: study.turned_channels(),
+            requirements: study.requirements.as_ref().clone(),
             variants: variants.collect(),
         }
     }
+}
+
+fn is_default(settings: &RequirementSettings) -> bool {
+    *settings == RequirementSettings::default()
 }
 
 /// The decisions of a study file about its dataset.
@@ -189,7 +197,14 @@ fn present_decisions(
             return Err(ContentError::new(Location::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
         }
     }
-    Ok(Decisions { settings, choices, taken: Vec::new(), signs: Vec::new(), variants: Vec::new() })
+    Ok(Decisions {
+        settings,
+        choices,
+        taken: Vec::new(),
+        signs: Vec::new(),
+        requirements: Arc::default(),
+        variants: Vec::new(),
+    })
 }
 
 /// The models that a study has taken, for its dataset.
@@ -269,6 +284,7 @@ pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>)
     let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
         .map_err(|error| FileError::content(path, error))?;
     decisions.signs = text.signs;
+    decisions.requirements = Arc::new(text.requirements);
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {
         _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),

@@ -2,9 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align2, Color32, CursorIcon, FontId, Rect, Response, Ui, UiBuilder, pos2, vec2};
-use egui_plot::PlotPoint;
+use egui::{
+    Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2,
+    vec2,
+};
+use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_core::units::signed;
+use gdcm_files::figure::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{BandChange, Emphasis, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui};
@@ -18,7 +22,7 @@ use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, curve_tooltip_ui, readout_strip_ui};
 use super::rule::{BodeBand, ReferenceLine};
-use crate::view::controls::{elided, painted_text};
+use crate::view::controls::{elided, named, painted_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Part of the height that the magnitude plot gets.
@@ -31,6 +35,9 @@ const GAP: f32 = 6.0;
 const MARGINS: [f32; 2] = [36.0, 78.0];
 /// In a lower plot, the values have no room between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
+/// Height of the strip of coherence, and of the plot that has room for it \[pt\].
+const COHERENCE_HEIGHT: f32 = 52.0;
+const LEAST_WITH_COHERENCE: f32 = 380.0;
 /// Below this, there is no room for two plots \[pt\].
 const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
 
@@ -47,6 +54,10 @@ pub struct BodeScene<'a> {
     pub rules: &'a [ReferenceLine],
     /// Areas around curves.
     pub bands: &'a [BodeBand],
+    /// Coherence of measured responses, in a strip below the panes.
+    pub coherence: &'a [CoherenceCurve],
+    /// From which coherence on a frequency counts.
+    pub least_coherence: f64,
     /// Frequencies marked along the lower edge of each pane \[rad/s\].
     pub strips: &'a [(f64, f64)],
     /// The frequencies that fitting shows \[rad/s\]; those of the curves where there are none.
@@ -116,6 +127,8 @@ impl<'a> BodeScene<'a> {
             curves,
             rules: &[],
             bands: &[],
+            coherence: &[],
+            least_coherence: 0.0,
             strips: &[],
             omega_range: None,
             cursor: None,
@@ -310,11 +323,18 @@ struct Places {
     headings: [Rect; 2],
     panes: [Rect; 2],
     strip: Option<Rect>,
+    coherence: Option<Rect>,
 }
 
 impl Places {
     fn of(area: Rect, scene: &BodeScene<'_>) -> Self {
         let inner = area.with_max_x(area.right() - MARGINS[usize::from(scene.names_curves)]);
+        let has_coherence = !scene.coherence.is_empty() && inner.height() >= LEAST_WITH_COHERENCE;
+        let coherence = has_coherence.then(|| {
+            let foot = inner.with_min_y(inner.bottom() - COHERENCE_HEIGHT);
+            foot.with_min_x(inner.left() + VALUE_AXIS_WIDTH)
+        });
+        let inner = coherence.map_or(inner, |strip| inner.with_max_y(strip.top() - GAP));
         // Its room is kept while there is nothing to read out: nothing moves when the pointer comes.
         let has_strip = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_strip { STRIP_HEIGHT + 2.0 * GAP } else { GAP };
@@ -331,6 +351,7 @@ impl Places {
             headings: [heading(magnitude), heading(phase)],
             panes: [magnitude, phase],
             strip: has_strip.then_some(strip),
+            coherence,
         }
     }
 }
@@ -450,6 +471,37 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
     if let (Some(strip), Some(readout)) = (places.strip, scene.readout) {
         readout_strip_ui(ui, strip, readout, palette);
     }
+    if let (Some(strip), Some(transform)) = (places.coherence, view.phase_transform()) {
+        coherence_ui(ui, strip, scene, transform, palette);
+    }
+}
+
+/// Coherence of the measured responses over the frequencies of the panes, with the least that counts.
+fn coherence_ui(ui: &Ui, strip: Rect, scene: &BodeScene<'_>, transform: &PlotTransform, palette: &Palette) {
+    let strip = strip.with_min_x(transform.frame().left()).with_max_x(transform.frame().right());
+    let y = |value: f64| strip.bottom() - strip.height() * (value / 1.05) as f32;
+    let painter = ui.painter();
+    painter.rect_stroke(strip, 0.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    for value in [0.0, 1.0] {
+        let at = pos2(strip.left() - 6.0, y(value).clamp(strip.top() + 5.0, strip.bottom() - 5.0));
+        painter.text(at, Align2::RIGHT_CENTER, format!("{value}"), caption_font(), palette.dim_text);
+    }
+    painter.text(pos2(strip.left() - 6.0, y(0.5)), Align2::RIGHT_CENTER, "γ²", caption_font(), palette.text);
+    let least = [strip.left(), strip.right()].map(|x| pos2(x, y(scene.least_coherence)));
+    painter.extend(Shape::dashed_line(&least, Stroke::new(1.0, palette.dim_text), 4.0, 3.0));
+    let painter = painter.with_clip_rect(strip.intersect(ui.clip_rect()));
+    for curve in scene.coherence {
+        let place = |[omega, value]: &[f64; 2]| {
+            pos2(transform.position_from_point(&PlotPoint::new(omega.log10(), 0.0)).x, y(*value))
+        };
+        let style = palette.role_style(curve.role, curve.rejected).in_miniature();
+        let mut shapes = Vec::new();
+        style.add_shapes(curve.points.iter().map(place).collect(), &mut shapes);
+        painter.extend(shapes);
+    }
+    let name = format!("Coherence of {}{}", scene.pair_title, scene.quantity.label_suffix());
+    named(ui.interact(strip, Id::unique(&name), Sense::hover()), egui::Role::Label, name)
+        .on_hover_text("γ² of the measured responses; below the dashed line a frequency does not count, or is a guess");
 }
 
 /// The roles that are named where they end.

@@ -221,8 +221,8 @@ const LEAST_SPECTRUM: f32 = 140.0;
 /// Lines of a spectrum that are averaged into one point.
 const SMOOTHED: usize = 5;
 
-/// Amplitude of each input over frequency: \[rad/s\] and \[dB\].
-type Amplitudes = Vec<Arc<[[f64; 2]]>>;
+/// Autospectrum of each input over frequency: \[rad/s\] and \[dB of its unit squared by Hz\].
+type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
 /// A chart for each input: its spectrum in every record, the chosen one on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
@@ -232,14 +232,14 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     let band = records
         .band
         .map_or(state.study.settings.band, |band| Band::new(band[0], band[1]).unwrap_or(state.study.settings.band));
-    let of_rows: Vec<(bool, Arc<Amplitudes>)> = records
+    let of_rows: Vec<(bool, Arc<Autospectra>)> = records
         .rows
         .iter()
         .enumerate()
         .filter_map(|(index, row)| {
             let flight = row.flight.as_ref()?;
-            let (name, source) = (format!("amplitude {index}"), Arc::clone(flight));
-            let spectra = kept(ui, &name, &[source], band.max().to_bits(), || amplitude(flight, band.max()));
+            let (name, source) = (format!("autospectrum {index}"), Arc::clone(flight));
+            let spectra = kept(ui, &name, &[source], band.max().to_bits(), || autospectra(flight, band.max()));
             Some((index == records.chosen, spectra))
         })
         .collect();
@@ -252,8 +252,8 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         let area = ui.allocate_exact_size(vec2(width * columns as f32, height * rows as f32), Sense::hover()).0;
         for (input, channel) in dataset.inputs().iter().enumerate() {
             let corner = area.min + vec2((input % columns) as f32 * width, (input / columns) as f32 * height);
-            let title = format!("{}: amplitude of each record", channel.name);
-            let label = format!("dB of {}·s", channel.unit);
+            let title = format!("{}: autospectrum of each record", channel.name);
+            let label = format!("dB of ({})²/Hz", channel.unit);
             let across = unit.axis_label();
             let mut chart = Chart::new(&title, ChartAxis::Frequency(unit), &across, &label);
             let color = palette.accent.gamma_multiply(0.12);
@@ -272,8 +272,9 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     });
 }
 
-/// Amplitude of each input over frequency \[dB\].
-fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
+/// Power of each input by frequency, `2 dt² / T |sum u e^(-j omega t)|²` about its mean, averaged over a few lines: one-sided, so that its
+/// integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data, 5.2.2).
+fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
     let steps: Vec<f64> = flight.time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
     let Some(step) = steps.get(steps.len() / 2).copied() else { return Vec::new() };
@@ -290,7 +291,7 @@ fn amplitude(flight: &FlightRecord, highest: f64) -> Amplitudes {
                 .omega
                 .iter()
                 .enumerate()
-                .map(|(k, omega)| [*omega, spectrum.inputs[(input, k)].norm_sqr()])
+                .map(|(k, omega)| [*omega, 2.0 * spectrum.inputs[(input, k)].norm_sqr()])
                 .collect();
             let smooth = |part: &[[f64; 2]]| {
                 let count = part.len() as f64;
@@ -338,6 +339,23 @@ pub(super) fn kept<T: Send + Sync + 'static>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_integral_of_an_autospectrum_is_the_variance() {
+        // 500 lines below half the sampling frequency, averaged by fives: none is left over.
+        let samples = 1001;
+        let input: Vec<f64> = (0..samples).map(|n| (0.7 * (n * n) as f64).sin() + 3.0).collect();
+        let column = |values: &[f64]| nalgebra::DMatrix::from_column_slice(values.len(), 1, values);
+        let time_s: Vec<f64> = (0..samples).map(|n| 0.02 * n as f64).collect();
+        let (inputs, outputs) = (column(&input), column(&input));
+        let flight = FlightRecord { name: "record".to_owned(), time_s, inputs, outputs };
+        let autospectrum = autospectra(&flight, 1e6)[0].clone();
+        let (step_hz, mean) = (SMOOTHED as f64 / (0.02 * samples as f64), input.iter().sum::<f64>() / samples as f64);
+        let integral: f64 = autospectrum.iter().map(|[_, db]| 10f64.powf(0.1 * db) * step_hz).sum();
+        let variance = input.iter().map(|u| (u - mean).powi(2)).sum::<f64>() / samples as f64;
+        // Parseval; rounding of a thousand terms.
+        assert!((integral / variance - 1.0).abs() < 1e-9, "{integral} {variance}");
+    }
 
     #[test]
     fn it_is_computed_once_for_its_sources_and_key() {

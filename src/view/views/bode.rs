@@ -3,9 +3,9 @@
 use egui::Ui;
 use gdcm_core::dataset::Pair;
 use gdcm_core::units::{number, ratio_to_db, s_to_ms};
-use gdcm_files::figure::{ConditionSource, decimals, uncertainty_bands};
+use gdcm_files::figure::{ConditionSource, decimals, muad_about, uncertainty_bands};
 
-use super::frequency::{bode_curves, frequency_plot_ui};
+use super::frequency::{bode_curves, bode_options, condition_source, frequency_plot_ui};
 use crate::view::command::Command;
 use crate::view::palette::Palette;
 use crate::view::plot::{
@@ -30,6 +30,11 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let band = state.study.settings.band;
     let bands = uncertainty_bands(state.dataset(), pair, &curves);
     let shows_bands = (!bands.is_empty()).then_some(display.shows_bands);
+    let unnoticed = muad_about(&curves, &bode_options(state));
+    let options = bode_options(state);
+    let source = condition_source(state);
+    let coherence = source.as_ref().map(|source| source.coherence_curves(pair, &options)).unwrap_or_default();
+    let least_coherence = source.as_ref().map_or(0.0, ConditionSource::least_coherence);
     let missing = missing_phase(&curves, (band.min(), band.max()));
     let invalid = invalid_region(state, &curves);
     let notes = notes(state, pair);
@@ -37,6 +42,9 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let (band, message) = ((band.min(), band.max()), state.curves_message());
     let scene = BodeScene {
         quantity,
+        rules: &unnoticed,
+        coherence: &coherence,
+        least_coherence,
         bands: &bands,
         shows_bands,
         missing: missing.as_ref(),

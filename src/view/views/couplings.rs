@@ -17,7 +17,7 @@ use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::figures::request;
 use crate::view::palette::{BODY_SIZE, Palette, medium};
-use crate::view::plot::{FigureScene, FigureWords, figure_ui};
+use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{Sorting, TableLook, table_grid_ui};
@@ -102,6 +102,7 @@ pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comm
         message: state.results.absence(),
         words: (&LoopWords(&figure), 0),
     };
+    figure_legend_ui(ui, &figure, palette);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Couplings, view);
 }

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use egui::Ui;
 use gdcm_core::study::{
-    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RequirementsJob, SimulationJob, VariantJob,
+    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
+    SimulationJob, TestAnswersJob, VariantJob,
 };
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
@@ -21,6 +22,7 @@ mod couplings;
 mod error;
 mod evidence;
 mod frequency;
+mod histories;
 mod leads;
 mod net_gain;
 mod overview;
@@ -36,6 +38,7 @@ pub use couplings::*;
 pub use error::*;
 pub use evidence::*;
 pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
+pub use histories::*;
 pub use leads::*;
 pub use net_gain::*;
 pub use overview::*;
@@ -235,10 +238,14 @@ impl View {
             Self::Requirements => ViewKind {
                 group: ViewGroup::Judge,
                 takes_dock: true,
+                title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
                 tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-                tools_width: 260.0,
+                tools_width: 130.0,
                 is_of_all_conditions: true,
-                needs: |state| requirements_job(state).map(Need::Requirements).into_iter().collect(),
+                needs: |state| match state.display.requirements_page {
+                    RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
+                    _ => requirements_job(state).map(Need::Requirements).into_iter().collect(),
+                },
                 figure: Some(FigureKind::Requirements),
                 ..ViewKind::new(
                     "Requirements",
@@ -359,4 +366,8 @@ pub enum Need {
     Couplings(CouplingsJob),
     /// What a qualification asks.
     Requirements(RequirementsJob),
+    /// What models answer to the test input.
+    TestAnswers(TestAnswersJob),
+    /// What they answer to a flight record.
+    RecordHistory(RecordHistoryJob),
 }

@@ -9,7 +9,7 @@ use gdcm_core::requirements::{ModeName, NamedBy};
 use gdcm_core::response::{Mode, finite_zeros};
 use gdcm_core::study::{ConditionAnalysis, ConditionModes, Edit, FittedCouplings, Table};
 use gdcm_core::units::number;
-use gdcm_files::figure::{Along, DotShape, Figure, Mark, MarkId, Range, Role, Sample, damping_grid, poles_figure};
+use gdcm_files::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
 use nalgebra::Complex;
 
 use super::View;
@@ -17,7 +17,7 @@ use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
+use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
 
@@ -55,7 +55,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     };
     let mut view = state.display.figures.remove(&View::Poles).unwrap_or_default();
     let figure = poles(state).map(|figure| dressed(figure, &view)).unwrap_or_default();
-    legend_ui(ui, &figure, palette);
+    figure_legend_ui(ui, &figure, palette);
     let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
     let scene = FigureScene {
         name: "poles",
@@ -80,23 +80,6 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         });
     }
     state.display.figures.insert(View::Poles, view);
-}
-
-/// What the marks stand for, in one line above the plots.
-fn legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(12.0, 0.0);
-        for entry in figure.legend() {
-            let Sample::Dot { shape, color, .. } = entry.sample else { continue };
-            let mark = match shape {
-                DotShape::Cross => "×",
-                DotShape::Plus => "+",
-                _ => "○",
-            };
-            let words = RichText::new(format!("{mark} {}", entry.text)).size(SMALL_SIZE);
-            ui.label(words.color(palette.name_of(palette.color(color))));
-        }
-    });
 }
 
 /// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.

@@ -1,52 +1,59 @@
 //! Requirements: the questions of a qualification after J, of physics, corrected, scheduled and identified models side by side (M17).
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Color32, Label, Panel, Ui, Vec2, vec2};
+use egui::{Button, Color32, Label, Panel, Ui, Vec2, vec2};
 use gdcm_core::dataset::Pair;
-use gdcm_core::requirements::ModeVerdict;
-use gdcm_core::study::{RequirementRole, Requirements, RequirementsJob, Table};
+use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
+use gdcm_core::study::{Edit, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table};
 use gdcm_core::units::{s_to_ms, telling};
 use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs};
 
-use super::View;
+use super::{View, histories_ui};
 use crate::view::CurveCommand;
 use crate::view::command::Command;
-use crate::view::controls::restore_panel_size;
+use crate::view::controls::{button_ui, check_ui, entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
 
+/// What stands over every page.
+pub(super) const NO_QUALIFICATION: &str =
+    "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Part of the height that the table has at first.
 const TABLE_PART: f32 = 0.34;
 
-/// Which table stands below the plots.
+/// Which question is answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum RequirementsTable {
+pub enum RequirementsPage {
     /// Bandwidth and phase delay of every response, condition and model.
     #[default]
     Bandwidth,
+    /// What the models of the condition shown answer over time.
+    Histories,
     /// Modes of the condition shown.
     Modes,
     /// Mean J and shares of the band of every condition and model.
     Summary,
 }
 
-/// Which table is shown. Laid out from right to left.
+/// Which question is answered. Laid out from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let mut chosen = state.display.requirements_table;
+    let mut chosen = state.display.requirements_page;
     let choices = [
-        (RequirementsTable::Summary, "summary", "Mean J, and the share of the band inside the MUAD envelopes"),
-        (RequirementsTable::Modes, "modes", "Modes of the condition, against their tolerances"),
-        (RequirementsTable::Bandwidth, "bandwidth", "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)"),
+        (RequirementsPage::Summary, "summary", "Mean J, and the share of the band inside the MUAD envelopes"),
+        (RequirementsPage::Modes, "modes", "Modes of the condition, against their tolerances"),
+        (RequirementsPage::Histories, "in time", "Responses over time, to a step or a doublet of the input in focus"),
+        (RequirementsPage::Bandwidth, "bandwidth", "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)"),
     ];
-    choice_ui(ui, "Table of requirements", &mut chosen, &choices);
-    if chosen != state.display.requirements_table {
+    choice_ui(ui, "Page of requirements", &mut chosen, &choices);
+    if chosen != state.display.requirements_page {
         commands.push(Command::ShowRequirements(chosen));
     }
 }
@@ -54,17 +61,31 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 /// The job of what is shown; none until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
-    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned() })
+    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned(), settings: Arc::clone(&state.study.requirements) })
 }
 
-/// Plots of bandwidth and phase delay, and a table below them.
+/// The page that is chosen, below what has to be known of all of them.
 pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    if state.display.requirements_page == RequirementsPage::Histories {
+        return histories_ui(ui, state, palette, commands);
+    }
     let Some(requirements) = state.requirements().cloned() else {
         return drop(ui.label(palette.dim(state.results.absence())));
     };
-    let words =
-        "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
-    ui.add(Label::new(palette.small(words)).truncate());
+    known_ui(ui, &requirements, palette);
+    if state.display.requirements_page != RequirementsPage::Bandwidth {
+        return requirements_table_ui(ui, state, &requirements, palette, commands);
+    }
+    asked_ui(ui, state, palette, commands);
+    restore_panel_size(ui, "requirements");
+    let size = TABLE_PART * ui.available_height();
+    let panel = Panel::bottom("requirements").resizable(true).default_size(size).min_size(60.0);
+    panel.show(ui, |ui| requirements_table_ui(ui, state, &requirements, palette, commands));
+    plots_ui(ui, state, &requirements, palette, commands);
+}
+
+/// What has no answer, and what has to be known of the answers.
+fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     for missing in &requirements.missing {
         let condition = missing.condition.map_or_else(String::new, |id| format!("Condition {id}: "));
         ui.add(
@@ -75,11 +96,51 @@ pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, c
         let words = format!("⚠ Condition {}: {}", caution.condition, caution.text);
         ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
     }
-    restore_panel_size(ui, "requirements");
-    let size = TABLE_PART * ui.available_height();
-    let panel = Panel::bottom("requirements").resizable(true).default_size(size).min_size(60.0);
-    panel.show(ui, |ui| requirements_table_ui(ui, state, &requirements, palette, commands));
-    plots_ui(ui, state, &requirements, palette, commands);
+}
+
+/// What bandwidths are asked with: which sticks command an attitude, and the engineer's levels.
+fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let settings = &state.study.requirements;
+    let decided = |what: &'static str, change: &dyn Fn(&mut RequirementSettings)| {
+        let mut changed = RequirementSettings::clone(settings);
+        change(&mut changed);
+        Command::from(Edit::SetRequirements(what, Arc::new(changed)))
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(palette.small("attitude command:"));
+        let outputs = state.dataset().measuring_pairs().marked().map(|pair| pair.output).collect::<BTreeSet<_>>();
+        for output in outputs {
+            let name = &state.dataset().outputs()[output].name;
+            if AttitudeOutput::of(&state.dataset().outputs()[output]).is_err() {
+                continue;
+            }
+            let is_on = settings.attitude_command.contains(name);
+            let hint =
+                "The stick commands the attitude, not its rate: the bandwidth is then that of the phase margin alone";
+            if let Some(is_on) = check_ui(ui, is_on, format!("attitude of {name}"), hint) {
+                commands.push(decided("attitude command", &|settings| {
+                    if is_on {
+                        settings.attitude_command.insert(name.clone());
+                    } else {
+                        settings.attitude_command.remove(name);
+                    }
+                }));
+            }
+        }
+        ui.separator();
+        let levels = settings.levels.all().len();
+        ui.label(palette.small(if levels == 0 { "levels: none".to_owned() } else { format!("levels: {levels}") }));
+        if levels > 0 && ui.small_button("Remove levels").clicked() {
+            commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
+        }
+        let hint = "path of a file of levels, as JSON";
+        if let Some(path) = entry_ui(ui, "File of levels", "", hint, 200.0).filter(|path| !path.trim().is_empty()) {
+            commands.push(Command::ReadLevels(path.trim().into()));
+        }
+        let hint = "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]: none is built in, for they depend on the task and \
+                    the category (docs/requirements.md)";
+        button_ui(ui, Button::new("Levels…").small(), hint, Command::AskLevels, commands);
+    });
 }
 
 fn plots_ui(
@@ -91,6 +152,7 @@ fn plots_ui(
 ) {
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     let pairs = bandwidth_pairs(requirements);
+    figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
     let scene = FigureScene {
         name: "requirements",
@@ -134,10 +196,10 @@ fn requirements_table_ui(
     commands: &mut Vec<Command>,
 ) {
     let id = state.condition().id();
-    let (table, color) = match state.display.requirements_table {
-        RequirementsTable::Bandwidth => (requirements.bandwidth_table(state.dataset()), CellColor::None),
-        RequirementsTable::Modes => (requirements.mode_table(id), CellColor::Modes),
-        RequirementsTable::Summary => (requirements.summary_table(), CellColor::Summary),
+    let (table, color) = match state.display.requirements_page {
+        RequirementsPage::Bandwidth => (requirements.bandwidth_table(state.dataset()), CellColor::None),
+        RequirementsPage::Modes => (requirements.mode_table(id), CellColor::Modes),
+        RequirementsPage::Histories | RequirementsPage::Summary => (requirements.summary_table(), CellColor::Summary),
     };
     ui.add(Label::new(palette.small(&table.title)).truncate());
     if table.rows.is_empty() {
@@ -155,15 +217,15 @@ fn requirements_table_ui(
 
 /// Where a click on a row goes.
 fn went_to(state: &State, requirements: &Requirements, row: usize) -> Vec<Command> {
-    match state.display.requirements_table {
-        RequirementsTable::Bandwidth => {
+    match state.display.requirements_page {
+        RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
             of.map(|of| marked_in_bode(requirements, of.pair, of.condition)).unwrap_or_default()
         }
-        RequirementsTable::Summary => {
+        RequirementsPage::Histories | RequirementsPage::Summary => {
             requirements.summary.get(row).map(|of| Command::SelectCondition(of.condition)).into_iter().collect()
         }
-        RequirementsTable::Modes => vec![Command::ShowView(View::Poles)],
+        RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
     }
 }
 

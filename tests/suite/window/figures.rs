@@ -37,8 +37,23 @@ fn every_view_is_saved_from_its_header() {
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     for view in views_with_figure() {
         show(&mut window, view);
+        wait_until(&mut window, "what it shows", |window| !state(window).results.background.is_busy());
         assert_saved(&mut window, view, FigureFormat::Svg, folder.path());
     }
+}
+
+#[test]
+fn coherence_of_measured_responses_stands_below_their_bode_plot() {
+    let mut window = window();
+    assert_eq!(figure_of(state(&window), View::Bode).unwrap().plots[0].panels.len(), 2, "the example has none");
+    open_by_path(&mut window, &files::small_dataset());
+    settle(&mut window);
+    show(&mut window, View::Bode);
+    let title = state(&window).dataset().pair_name(state(&window).display.pair);
+    window.get_by_label_contains(&format!("Coherence of {title}"));
+    let figure = figure_of(state(&window), View::Bode).unwrap();
+    let strip = figure.plots[0].panels.get(2).expect("magnitude, phase, coherence");
+    assert!(strip.marks.iter().any(|mark| matches!(mark, gdcm_files::figure::Mark::Curve(of) if !of.x.is_empty())));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The questions of a qualification by hand (M17).
 
 use gdcm::view::arrangement::View;
-use gdcm::view::views::RequirementsTable;
+use gdcm::view::views::RequirementsPage;
 use gdcm_core::study::RequirementRole;
 
 use super::lists::texts_in;
@@ -35,20 +35,79 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     let table = requirements.bandwidth_table(state(&window).dataset());
     assert_eq!(table.rows[row][3], "corrected");
     for (chosen, heading) in
-        [(RequirementsTable::Modes, "physics ζ"), (RequirementsTable::Summary, "in MUAD on-axis [%]")]
+        [(RequirementsPage::Modes, "physics ζ"), (RequirementsPage::Summary, "in MUAD on-axis [%]")]
     {
         give(&mut window, Action::ShowRequirements(chosen));
         assert!(texts(&window).contains(heading), "{heading}");
     }
     // A click on a mark goes to Bode, where the frequencies are marked that its numbers are read at.
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Bandwidth));
     window.get_by_label_contains("Phase delay over bandwidth of LAT → P");
-    give(&mut window, Action::ShowRequirements(RequirementsTable::Bandwidth));
     let first = requirements.bandwidth.first().unwrap();
-    let rests = window.get_all_by_label(first.role.name()).last().unwrap().rect().center();
+    let rests = window.get_all_by_label(first.role.name()).next().unwrap().rect().center();
     window.drag_at(rests);
     window.drop_at(rests);
     window.run_steps(4);
     assert!(state(&window).display.arrangement.is_shown(View::Bode), "the row leads to Bode");
     assert_eq!(state(&window).display.pair, first.pair);
     assert!(marked.iter().all(Option::is_some), "{corrected:?}");
+}
+
+fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_core::study::Requirements> {
+    wait_until(window, "the requirements", |window| {
+        let decided = &state(window).study.requirements.attitude_command;
+        state(window).requirements().is_some_and(|of| of.attitude_command == *decided)
+    });
+    state(window).requirements().unwrap().clone()
+}
+
+#[test]
+fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
+    let mut window = window();
+    show(&mut window, View::Requirements);
+    let rate = shown_requirements(&mut window);
+    click(&mut window, "attitude of P");
+    let attitude = shown_requirements(&mut window);
+    assert!(attitude.attitude_command.contains("P") && rate.attitude_command.is_empty());
+    let p_lat = pair(&window, "P", "LAT");
+    let of = attitude.bandwidth.iter().find(|of| of.pair == p_lat && of.omega_phase_rad_s.is_some()).unwrap();
+    assert_eq!(of.omega_bw_rad_s, of.omega_phase_rad_s, "the bandwidth is that of the phase margin alone");
+    give(&mut window, Action::Undo);
+    assert!(shown_requirements(&mut window).attitude_command.is_empty());
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("levels.json");
+    std::fs::write(&path, r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
+    give(&mut window, Action::ReadLevels(path.clone()));
+    assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
+    assert!(texts(&window).contains("levels: 1"));
+    std::fs::write(&path, "[]]").unwrap();
+    give(&mut window, Action::ReadLevels(path));
+    assert_eq!(state(&window).study.requirements.levels.all().len(), 1, "what cannot be read changes nothing");
+    click(&mut window, "Remove levels");
+    assert!(state(&window).study.requirements.levels.all().is_empty());
+}
+
+#[test]
+fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
+    let mut window = window();
+    show(&mut window, View::Requirements);
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    let answers = |window: &mut Window| {
+        wait_until(window, "the answers", |window| {
+            let decided = state(window).study.requirements.test;
+            matches!(state(window).test_answers(), Some(Ok(found)) if found.test == decided)
+        });
+        state(window).test_answers().unwrap().clone().unwrap()
+    };
+    let step = answers(&mut window);
+    assert_eq!(step.input, state(&window).display.pair.input);
+    assert!(step.models.iter().all(|(_, answer)| answer.is_ok()), "{:?}", step.models);
+    window.get_by_label("P [deg/s] over time");
+    click(&mut window, "Course of the test input");
+    click(&mut window, "doublet");
+    let doublet = answers(&mut window);
+    assert!(doublet.signal.iter().any(|value| *value < 0.0) && step.signal.iter().all(|value| *value >= 0.0));
+    give(&mut window, Action::Undo);
+    assert_eq!(answers(&mut window).test, step.test);
 }

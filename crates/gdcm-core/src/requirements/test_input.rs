@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::StateSpace;
 use crate::identification::FirstOrderHold;
-use crate::message_text::quoted;
 use crate::units::number;
 
 /// The course of an input over time.
@@ -19,13 +18,12 @@ pub enum TestInputShape {
 }
 
 /// A test: one stick moved from its trim, and back.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "TestInputText")]
 pub struct TestInput {
     /// Its course.
     pub shape: TestInputShape,
-    /// The input, as the dataset names it.
-    pub input: String,
-    /// Its size, in the unit of the input.
+    /// Its size, in the unit of the input that is moved.
     pub size: f64,
     /// How long it lasts \[s\].
     pub duration_s: f64,
@@ -35,20 +33,20 @@ pub struct TestInput {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
     /// There is no such input.
-    #[error("there is no input {} to move", quoted(input))]
+    #[error("the model has {inputs} inputs, none of number {}", input + 1)]
     NoInput {
-        /// The name that is asked for.
-        input: String,
+        /// Index of the input that is asked for.
+        input: usize,
+        /// How many there are.
+        inputs: usize,
     },
     /// Size or duration is not a number, or the duration is none.
-    #[error("expected a size, and a duration and a sample time above 0 s; found {}, {} s and {} s", number(*size), number(*duration_s), number(*sample_time_s))]
+    #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
     Numbers {
         /// The size.
         size: f64,
         /// The duration \[s\].
         duration_s: f64,
-        /// The sample time \[s\].
-        sample_time_s: f64,
     },
     /// The model acts in discrete time, or delays its channels by more than its states say.
     #[error("the model is not of continuous time without delays: write its delays as states first")]
@@ -58,7 +56,43 @@ pub enum TestInputError {
     NotFinite,
 }
 
+/// No test lasts longer \[s\].
+const LONGEST_S: f64 = 600.0;
+
+impl Default for TestInput {
+    /// A step of one unit of the stick, held for two seconds.
+    fn default() -> Self {
+        Self { shape: TestInputShape::Step, size: 1.0, duration_s: 2.0 }
+    }
+}
+
+/// A test as it stands in a file.
+#[derive(Deserialize)]
+struct TestInputText {
+    shape: TestInputShape,
+    size: f64,
+    duration_s: f64,
+}
+
+impl TryFrom<TestInputText> for TestInput {
+    type Error = TestInputError;
+
+    fn try_from(TestInputText { shape, size, duration_s }: TestInputText) -> Result<Self, TestInputError> {
+        Self { shape, size, duration_s }.checked()
+    }
+}
+
 impl TestInput {
+    /// The test, where its numbers are some.
+    ///
+    /// # Errors
+    /// [`TestInputError::Numbers`].
+    pub fn checked(self) -> Result<Self, TestInputError> {
+        let Self { size, duration_s, .. } = self;
+        let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
+        if size.is_finite() && is_duration { Ok(self) } else { Err(TestInputError::Numbers { size, duration_s }) }
+    }
+
     /// The input at `t = 0, dt, ...`, `samples` of them.
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
         // A millionth of a sample is rounding.
@@ -72,30 +106,27 @@ impl TestInput {
     }
 
     /// The outputs of `model` from rest, samples x outputs: the input is there from the first sample on, and later changes within
-    /// one sample time. `inputs` are the names of the model's inputs.
+    /// one sample time \[s\].
     ///
     /// # Errors
-    /// [`TestInputError`] where the input is unknown, its numbers are none, or the model cannot be simulated.
+    /// [`TestInputError`] where there is no such input, the numbers are none, or the model cannot be simulated.
     pub fn answer(
         &self,
         model: &StateSpace,
-        inputs: &[String],
+        input: usize,
         sample_time_s: f64,
         samples: usize,
     ) -> Result<DMatrix<f64>, TestInputError> {
-        let place = inputs.iter().position(|name| *name == self.input).filter(|place| *place < model.inputs());
-        let Some(place) = place else { return Err(TestInputError::NoInput { input: self.input.clone() }) };
-        let is_time = |time_s: f64| time_s.is_finite() && time_s > 0.0;
-        if !(self.size.is_finite() && is_time(self.duration_s) && is_time(sample_time_s)) {
-            let (size, duration_s) = (self.size, self.duration_s);
-            return Err(TestInputError::Numbers { size, duration_s, sample_time_s });
+        self.checked()?;
+        if input >= model.inputs() {
+            return Err(TestInputError::NoInput { input, inputs: model.inputs() });
         }
         if !model.timing().is_plain() {
             return Err(TestInputError::Timing);
         }
         let held = FirstOrderHold::of(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
         let mut moved = DMatrix::zeros(samples, model.inputs());
-        moved.column_mut(place).copy_from_slice(&self.signal(sample_time_s, samples));
+        moved.column_mut(input).copy_from_slice(&self.signal(sample_time_s, samples));
         let answer = held.simulate(&DVector::zeros(model.order()), &moved);
         answer.iter().all(|value| value.is_finite()).then_some(answer).ok_or(TestInputError::NotFinite)
     }
@@ -108,15 +139,11 @@ mod tests {
     use nalgebra::dmatrix;
 
     fn test(shape: TestInputShape) -> TestInput {
-        TestInput { shape, input: "LAT".into(), size: 10.0, duration_s: 1.0 }
+        TestInput { shape, size: 10.0, duration_s: 1.0 }
     }
 
     fn lag() -> StateSpace {
         StateSpace::new(dmatrix![-2.0], dmatrix![0.0, 1.0], dmatrix![1.0], dmatrix![0.0, 0.0]).unwrap()
-    }
-
-    fn names() -> [String; 2] {
-        ["LON".to_owned(), "LAT".to_owned()]
     }
 
     #[test]
@@ -128,7 +155,7 @@ mod tests {
 
     #[test]
     fn the_answer_of_a_lag_to_a_step_is_its_known_one() {
-        let answer = test(TestInputShape::Step).answer(&lag(), &names(), 0.1, 10).unwrap();
+        let answer = test(TestInputShape::Step).answer(&lag(), 1, 0.1, 10).unwrap();
         for (n, y) in answer.iter().enumerate() {
             // 10 / 2 (1 - e^(-2 t)); rounding of ten steps.
             let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
@@ -138,14 +165,11 @@ mod tests {
 
     #[test]
     fn what_cannot_be_simulated_is_refused_in_words() {
-        let refused =
-            |test: &TestInput, model: &StateSpace| test.answer(model, &names(), 0.1, 5).unwrap_err().to_string();
+        let refused = |test: &TestInput, model: &StateSpace| test.answer(model, 1, 0.1, 5).unwrap_err().to_string();
         let step = test(TestInputShape::Step);
-        assert_eq!(
-            refused(&TestInput { input: "PED".into(), ..step.clone() }, &lag()),
-            "there is no input \"PED\" to move"
-        );
-        assert!(refused(&TestInput { duration_s: 0.0, ..step.clone() }, &lag()).contains("found 10, 0 s and 0.1 s"));
+        let third = step.answer(&lag(), 2, 0.1, 5).unwrap_err().to_string();
+        assert_eq!(third, "the model has 2 inputs, none of number 3");
+        assert!(refused(&TestInput { duration_s: 0.0, ..step }, &lag()).contains("found 10 and 0 s"));
         let delayed = lag().timed(Timing { output_delays_s: Some(vec![0.1]), ..Timing::default() }).unwrap();
         assert!(refused(&step, &delayed).contains("write its delays as states"));
         let diverging =
@@ -155,8 +179,10 @@ mod tests {
 
     #[test]
     fn a_test_is_read_as_it_is_written() {
-        let text = r#"{"shape":"doublet","input":"LAT","size":10.0,"duration_s":1.0}"#;
+        let text = r#"{"shape":"doublet","size":10.0,"duration_s":1.0}"#;
         assert_eq!(serde_json::from_str::<TestInput>(text).unwrap(), test(TestInputShape::Doublet));
         assert_eq!(serde_json::to_string(&test(TestInputShape::Doublet)).unwrap(), text);
+        let endless = serde_json::from_str::<TestInput>(&text.replace("1.0", "1e9")).unwrap_err().to_string();
+        assert!(endless.contains("a duration above 0 s up to 600 s"), "{endless}");
     }
 }

@@ -148,6 +148,12 @@ impl Tolerance {
         Ok(())
     }
 
+    /// "±10 % or ±3 deg/s".
+    pub fn words(&self) -> String {
+        let relative = self.relative.map_or_else(String::new, |part| format!("±{} % or ", number(100.0 * part)));
+        format!("{relative}±{} {}", number(self.absolute), self.unit)
+    }
+
     /// The tolerance in the units of the dataset's output.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::correction::Channel;
 use crate::dataset::{BandError, BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
 use crate::units::number;
 
-use super::{AdoptedModels, ConditionChoice, Setting, SignRole, Study, Value};
+use super::{AdoptedModels, ConditionChoice, RequirementSettings, Setting, SignRole, Study, Value};
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,6 +78,8 @@ pub enum Edit {
         /// The condition.
         condition: ConditionId,
     },
+    /// Ask requirements with other settings: what of them is other, and all of them. A decision of the study, of all variants.
+    SetRequirements(&'static str, Arc<RequirementSettings>),
     /// Keep the present decisions under a name.
     KeepVariant {
         /// The name.
@@ -253,6 +255,7 @@ impl Edit {
             Edit::ReturnModels { condition } => {
                 format!("put the file's identified models back (condition {condition})")
             }
+            Edit::SetRequirements(what, _) => format!("requirements: {what}"),
             Edit::KeepVariant { name } => format!("keep variant {name}"),
             Edit::TakeVariant { name } => format!("take variant {name}"),
             Edit::RemoveVariant { name } => format!("remove variant {name}"),
@@ -264,6 +267,7 @@ impl Edit {
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
             (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
+            (Edit::SetRequirements(later, _), Edit::SetRequirements(earlier, _)) => later == earlier,
             _ => false,
         }
     }
@@ -299,6 +303,7 @@ impl Study {
             Edit::SetSign { channel, of } => return self.set_sign(*channel, *of),
             Edit::TakeModels(taken) => return self.take_models(taken),
             Edit::ReturnModels { condition } => return self.return_models(*condition),
+            Edit::SetRequirements(_, settings) => self.requirements = Arc::clone(settings),
             Edit::KeepVariant { name } => return self.keep_variant(name),
             Edit::TakeVariant { name } => return self.take_variant(name),
             Edit::RemoveVariant { name } => return self.remove_variant(name),

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
 
-use super::{AdoptedModels, ConditionChoice, Edit, ResponseNames, Settings, Study, TurnedChannel, Variant};
+use super::{
+    AdoptedModels, ConditionChoice, Edit, RequirementSettings, ResponseNames, Settings, Study, TurnedChannel, Variant,
+};
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +96,8 @@ pub struct Decisions {
     pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
     /// The channels whose models are turned.
     pub signs: Vec<TurnedChannel>,
+    /// What requirements are asked with.
+    pub requirements: Arc<RequirementSettings>,
     /// The decisions kept under names; these have none of their own.
     pub variants: Vec<(String, Decisions)>,
 }
@@ -106,6 +110,7 @@ impl Decisions {
             choices: study.choices.clone(),
             taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
             signs: study.turned_channels(),
+            requirements: Arc::clone(&study.requirements),
             variants: study
                 .variants
                 .iter()
@@ -118,6 +123,11 @@ impl Decisions {
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut study = Study::new(dataset);
         let mut differences = Vec::new();
+        study.requirements = Arc::clone(&self.requirements);
+        for decision in self.requirements.without_channel(&study.dataset) {
+            let why = "it stays in the study for another dataset".to_owned();
+            differences.push(Difference::NotApplied { decision, why });
+        }
         study.settings = self.settings.with_responses(|verb, names| marked(verb, names, &study, &mut differences));
         for taken in &self.taken {
             let edit = Edit::TakeModels(vec![taken.clone()]);

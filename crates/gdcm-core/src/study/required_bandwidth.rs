@@ -15,8 +15,7 @@ use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
 use crate::dataset::{self, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
-    CommandType, Metric, NoMetric, PairBand, PhaseLine, ResponseDeviation, model_response, search_frequencies,
-    substitution_bar,
+    Metric, NoMetric, PairBand, PhaseLine, ResponseDeviation, model_response, search_frequencies, substitution_bar,
 };
 use crate::response::{GainDelay, PreparedModel};
 use crate::uncertainty::{Figures, Scalar, student_quantile};
@@ -188,7 +187,6 @@ type MetricValues = [Option<f64>; 5];
 /// The models of a condition that bandwidths are read from.
 struct PreparedModels<'a> {
     asked: &'a AskedCondition<'a>,
-    settings: BandwidthSettings,
     physics: usize,
     /// The physics representative and those that stand in for it.
     of_physics: BTreeMap<usize, ReadModel<'a>>,
@@ -224,12 +222,13 @@ impl<'a> PreparedModels<'a> {
         let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
         let flight = &bundle(BundleKind::Identified)[asked.result.comparison.identified.model];
         let identified = ReadModel::of(Cow::Borrowed(flight));
-        let settings = BandwidthSettings {
-            command: CommandType::default(),
-            band: asked.analysis.study.settings.band,
-            above_band: AboveBand::Marked,
-        };
-        Self { asked, settings, physics, of_physics, of_coupled, identified, swaps }
+        Self { asked, physics, of_physics, of_coupled, identified, swaps }
+    }
+
+    fn settings(&self, pair: Pair) -> BandwidthSettings {
+        let study = &self.asked.analysis.study;
+        let command = study.requirements.command_of(&study.dataset.outputs()[pair.output].name);
+        BandwidthSettings { command, band: study.settings.band, above_band: AboveBand::Marked }
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
@@ -280,14 +279,14 @@ impl<'a> PreparedModels<'a> {
         let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
         if role == RequirementRole::Identified {
             let (model, bands) = (&self.identified, self.identified.model.bands.as_deref());
-            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings, bands);
+            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings(pair), bands);
             return bandwidth.map_err(|error| error.to_string());
         }
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
             Some(of) => PairCorrection::of(of, pair).ok_or_else(|| "the net gain is not positive".to_owned())?,
         };
-        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(response, correction, self.settings, None);
+        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(response, correction, self.settings(pair), None);
         bandwidth.map_err(|error| error.to_string())
     }
 
@@ -359,7 +358,7 @@ impl<'a> PreparedModels<'a> {
         let read = self.physics_of(role, model).ok();
         let bandwidth = correction
             .zip(read)
-            .and_then(|(correction, read)| read.bandwidth(response, correction, self.settings, None).ok());
+            .and_then(|(correction, read)| read.bandwidth(response, correction, self.settings(pair), None).ok());
         bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
     }
 }

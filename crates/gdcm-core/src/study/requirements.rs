@@ -1,13 +1,13 @@
 //! What a qualification asks of the models of every condition (M17), without flight records: bandwidth and phase delay, modes, summary
 //! costs.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
 use crate::correction::ChannelCorrection;
 use crate::dataset::{BundleKind, ConditionId, Pair};
-use crate::requirements::{CommandType, ModeToleranceTable, Summary, SummarySource};
+use crate::requirements::{Summary, SummarySource};
 
 use super::{
     Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Engine, Execution, ModeFinding,
@@ -111,8 +111,8 @@ pub struct Requirements {
     pub band_rad_s: [f64; 2],
     /// Level of every interval.
     pub interval_level: f64,
-    /// What the sticks of all axes command.
-    pub command: CommandType,
+    /// Names of the outputs whose attitude the stick commands; of all others it commands the rate.
+    pub attitude_command: BTreeSet<String>,
     /// Bandwidth and phase delay of every on-axis response of every condition and role.
     pub bandwidth: Vec<BandwidthFinding>,
     /// The modes of physics against those identified.
@@ -214,7 +214,7 @@ impl ConditionFindings {
         };
         let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
         let asked = AskedCondition { analysis, result, scheduled };
-        let (modes, no_modes) = match mode_findings(&asked, &ModeToleranceTable::default()) {
+        let (modes, no_modes) = match mode_findings(&asked, &analysis.study.requirements.mode_tolerances) {
             Ok(modes) => (modes, None),
             Err(why) => (Vec::new(), Some(missing("modes", why))),
         };
@@ -244,7 +244,7 @@ pub fn requirements_of(analysis: &Analysis, execution: &Execution<'_>) -> Result
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
         interval_level: settings.uncertainty.level,
-        command: CommandType::default(),
+        attitude_command: analysis.study.requirements.attitude_command.clone(),
         bandwidth: Vec::new(),
         modes: Vec::new(),
         summary: Vec::new(),

@@ -8,7 +8,7 @@ use crate::requirements::{BandwidthRule, ModeVerdict};
 use crate::units::{s_to_ms, telling};
 
 use super::{
-    Analysis, BandwidthFinding, Cancelled, Execution, Job, ModeNumbers, Progress, RequirementRole, Requirements,
+    Analysis, BandwidthFinding, Cancelled, Execution, Job, ModeNumbers, Progress, RequirementRole, RequirementSettings, Requirements,
     SummaryFinding, Table, Uncertainty, requirements_of,
 };
 
@@ -19,6 +19,8 @@ pub struct RequirementsJob {
     pub analysis: Arc<Analysis>,
     /// How sure its values are.
     pub uncertainty: Option<Arc<Uncertainty>>,
+    /// What is asked with, which an analysis does not depend on.
+    pub settings: Arc<RequirementSettings>,
 }
 
 impl PartialEq for RequirementsJob {
@@ -28,7 +30,7 @@ impl PartialEq for RequirementsJob {
             (None, None) => true,
             _ => false,
         };
-        Arc::ptr_eq(&self.analysis, &other.analysis) && same_bars
+        Arc::ptr_eq(&self.analysis, &other.analysis) && same_bars && self.settings == other.settings
     }
 }
 
@@ -38,7 +40,7 @@ impl Job for RequirementsJob {
     type Output = Arc<Requirements>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let analysis = Analysis { uncertainty: self.uncertainty.clone(), ..Analysis::clone(&self.analysis) };
+        let analysis = Analysis { uncertainty: self.uncertainty.clone(), ..self.analysis.asked_with(&self.settings) };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
         Ok(Arc::new(requirements_of(&analysis, &execution)?))
     }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
-use super::{Edit, EditRefusal, Settings, Signs, Taken, check_length};
+use super::{Edit, EditRefusal, RequirementSettings, Settings, Signs, Taken, check_length};
 
 /// The engineer's choices in one bundle.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -111,6 +111,8 @@ pub struct Study {
     /// Models taken in place of those of the dataset's file; `dataset` has them.
     /// The channels whose models are turned.
     pub signs: Signs,
+    /// What requirements are asked with. No correction depends on it.
+    pub requirements: Arc<RequirementSettings>,
     /// The dataset of the file, where models are taken or turned.
     pub(super) taken: Option<Taken>,
 }
@@ -118,8 +120,8 @@ pub struct Study {
 impl PartialEq for Study {
     /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
     fn eq(&self, other: &Self) -> bool {
-        let decisions = (&self.settings, &self.choices, &self.variants, &self.signs)
-            == (&other.settings, &other.choices, &other.variants, &other.signs);
+        let decisions = (&self.settings, &self.choices, &self.variants, &self.signs, &self.requirements)
+            == (&other.settings, &other.choices, &other.variants, &other.signs, &other.requirements);
         decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
     }
 }
@@ -130,7 +132,15 @@ impl Study {
         let settings = Settings::of(&dataset);
         let ids = dataset.conditions().iter().map(|condition| condition.id());
         let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
-        Self { dataset, settings, choices, variants: Vec::new(), signs: Signs::new(), taken: None }
+        Self {
+            dataset,
+            settings,
+            choices,
+            variants: Vec::new(),
+            signs: Signs::new(),
+            requirements: Arc::default(),
+            taken: None,
+        }
     }
 
     /// The choices in one condition; those of a condition that the dataset does not have are none.
@@ -191,6 +201,7 @@ impl Study {
             choices: choices.clone(),
             variants: Vec::new(),
             signs: self.signs.clone(),
+            requirements: Arc::clone(&self.requirements),
             taken: self.taken.clone(),
         })
     }

@@ -24,7 +24,7 @@ use super::{
 };
 
 /// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
-const LEAST_PIECE_S: f64 = 2.0;
+pub(super) const LEAST_PIECE_S: f64 = 2.0;
 /// What a reason for an absent time history is listed under.
 const WHAT: &str = "time histories";
 

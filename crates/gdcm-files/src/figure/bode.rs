@@ -8,9 +8,11 @@ use gdcm_core::study::{AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobs
 use gdcm_core::units::db_to_ratio;
 
 use super::axis::{Axis, Range};
+use super::coherence::coherence_panel;
 use super::condition_source::{ConditionSource, CurveId, settings_words};
 use super::curve::{BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::drawing::{Color, Hue};
+use super::error::muad_about;
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Along, Band, Curve, Envelope, Mark, Note, Place, Rule};
 use super::responses::{AirspeedCache, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands};
@@ -49,7 +51,7 @@ pub struct BodeOptions {
     pub isolated: Option<ModelId>,
     /// Whole turns that phases were moved up by hand.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// Whether what a pilot does not notice is shown among the errors.
+    /// Whether what a pilot does not notice is shown, about the identified response and among the errors.
     pub shows_muad: bool,
     /// The response whose zeros are shown among the poles, where those of one are.
     pub zeros_of: Option<Pair>,
@@ -61,7 +63,7 @@ pub struct BodeOptions {
 
 impl BodeOptions {
     /// The axis of frequencies.
-    fn frequency_axis(&self) -> Axis {
+    pub(super) fn frequency_axis(&self) -> Axis {
         Axis::logarithmic(self.unit.axis_label()).showing(self.omega.map(|range| self.in_unit(range.min, range.max)))
     }
 
@@ -123,13 +125,10 @@ impl FrequencyPanels<'_> {
                 Curve::new(&curve.label, curve.role.stroke(curve.rejected), in_unit(&curve.omega), values).key(key)
             })
             .collect();
-        let omega = self.curves.first().map(|curve| &curve.omega);
-        let references: Vec<Mark> = self
-            .references
-            .iter()
-            .filter(|line| line.pane == pane)
-            .filter_map(|line| Some(reference_mark(line, (omega?, in_unit(omega?)))))
-            .collect();
+        let omega = self.curves.first().map_or(&[][..], |curve| &curve.omega);
+        let references = self.references.iter().filter(|line| line.pane == pane);
+        let references: Vec<Mark> =
+            references.map(|line| reference_mark(line, omega, self.options.unit, &shown)).collect();
         let strips = self.strips.iter().map(|&(from, to)| Band {
             along: Along::X,
             range: self.options.in_unit(from, to),
@@ -152,18 +151,20 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// A line that curves are read against: where it is level and has a label of its own a rule, else a curve over these frequencies.
-fn reference_mark(line: &ReferenceLine, (omega, frequency): (&Arc<[f64]>, Arc<[f64]>)) -> Mark {
+/// A line that curves are read against: where it is level and has a label of its own a rule, else a curve over its own frequencies or
+/// these \[rad/s\].
+fn reference_mark(line: &ReferenceLine, omega: &[f64], unit: FrequencyUnit, shown: &impl Fn(f64) -> f64) -> Mark {
     let stroke = line.kind.line().printed();
-    match &line.level {
+    let points: Vec<[f64; 2]> = match &line.level {
         Level::Constant(value) if matches!(line.kind, ReferenceKind::Delta | ReferenceKind::Bound) => {
-            Rule::horizontal(*value, stroke).label(&line.label).into()
+            return Rule::horizontal(shown(*value), stroke).label(&line.label).into();
         }
-        level => {
-            let values: Vec<f64> = omega.iter().map(|omega| level.at(*omega)).collect();
-            Curve::new(&line.label, stroke, frequency, values).key(line.kind.key()).into()
-        }
-    }
+        Level::Sampled(points) => points.clone(),
+        level => omega.iter().map(|omega| [*omega, level.at(*omega)]).collect(),
+    };
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        points.iter().map(|[omega, value]| (unit.of_omega(*omega), shown(*value))).unzip();
+    Curve::new(&line.label, stroke, x, y).key(line.kind.key()).into()
 }
 
 /// A figure of a plot of each of `pairs`, beside one another; where it is one, that one names the figure.
@@ -204,12 +205,15 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
         let curves = source.response_curves(pair, options, &mut ResponseCache::default());
         let bands = uncertainty_bands(source.dataset(), pair, &curves);
         let ratio_unit = ConditionSource::ratio_unit(source.dataset(), pair);
-        plot((&curves, &bands), source.study.settings.band, options, &ratio_unit)
+        let unnoticed = muad_about(&curves, options);
+        let plot = plot((&curves, &bands, &unnoticed), source.study.settings.band, options, &ratio_unit);
+        let coherence = coherence_panel(source, pair, options);
+        coherence.into_iter().fold(plot, |plot, panel| plot.panel(panel.over(options.band(source.study.settings.band))))
     })
 }
 
 fn plot(
-    (curves, bands): (&[BodeCurve], &[BodeBand]),
+    (curves, bands, references): (&[BodeCurve], &[BodeBand], &[ReferenceLine]),
     band: BandOfComparison,
     options: &BodeOptions,
     ratio_unit: &str,
@@ -224,7 +228,7 @@ fn plot(
     };
     let magnitude_db = options.values[0].or_else(|| needed(Pane::Magnitude, 4.0));
     let phase_deg = options.values[1].or_else(|| needed(Pane::Phase, 20.0));
-    let panels = FrequencyPanels { curves, references: &[], bands, strips: &[], options };
+    let panels = FrequencyPanels { curves, references, bands, strips: &[], options };
     let magnitude = match options.magnitude {
         MagnitudeUnit::Decibel => panels.panel(Pane::Magnitude, Axis::linear("Magnitude [dB]").showing(magnitude_db)),
         MagnitudeUnit::Ratio => {
@@ -262,7 +266,7 @@ pub fn airspeeds_figure(
     let of_pair = |pair| {
         let made_of = (&**dataset, Some(analysis));
         let drawn = airspeed_curves(made_of, role, pair, &curves, &mut AirspeedCache::default());
-        plot((&drawn, &[]), settings.band, &options, "")
+        plot((&drawn, &[], &[]), settings.band, &options, "")
     };
     Some(side_by_side(dataset, pairs, of_pair, title).caption(settings_words(dataset, settings)))
 }

@@ -13,6 +13,7 @@ use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};
 use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
 use super::curve::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::figure::{Figure, Plot};
+use super::role::Role;
 use super::units::PhaseErrorUnit;
 
 /// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
@@ -207,19 +208,36 @@ fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
         PhaseErrorUnit::Degree => degrees,
         PhaseErrorUnit::Millisecond => s_to_ms(degrees.to_radians() / omega),
     };
-    let rule = |pane, label: &str, value: &dyn Fn(f64) -> f64| {
-        let level = Level::Sampled(omega.iter().map(|&omega| [omega, value(omega)]).collect());
-        ReferenceLine { note: String::new(), pane, kind: ReferenceKind::Envelope, label: label.to_owned(), level }
-    };
-    [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")]
-        .into_iter()
-        .flat_map(|(end, label)| {
-            [
-                rule(Pane::Magnitude, label, &|omega| -Muad::at(omega).magnitude_db[end]),
-                rule(Pane::Phase, label, &|omega| phase(omega, Muad::at(omega).phase_deg[end])),
-            ]
-        })
-        .collect()
+    let ends = [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")];
+    let rules = ends.into_iter().flat_map(|(end, label)| {
+        [
+            muad_line(Pane::Magnitude, label, omega, |_, omega| -Muad::at(omega).magnitude_db[end]),
+            muad_line(Pane::Phase, label, omega, |_, omega| phase(omega, Muad::at(omega).phase_deg[end])),
+        ]
+    });
+    rules.collect()
+}
+
+/// The same envelopes about the identified representative among `drawn`, hidden or not: a response within both cannot be told from
+/// it by a pilot. None where they are not asked for.
+pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
+    let identified = drawn.iter().find(|curve| curve.role == Role::IdentifiedRepresentative);
+    let Some(curve) = identified.filter(|_| options.shows_muad) else { return Vec::new() };
+    let (omega, magnitude_db, phase_deg) = (&curve.omega, &curve.magnitude_db, &curve.phase_deg);
+    let ends = [(0, "unnoticed above, MUAD"), (1, "unnoticed below, MUAD")];
+    let lines = ends.into_iter().flat_map(|(end, label)| {
+        [
+            muad_line(Pane::Magnitude, label, omega, |k, omega| magnitude_db[k] + Muad::at(omega).magnitude_db[end]),
+            muad_line(Pane::Phase, label, omega, |k, omega| phase_deg[k] + Muad::at(omega).phase_deg[end]),
+        ]
+    });
+    lines.collect()
+}
+
+/// An envelope over `omega` \[rad/s\]; `value` gets the number of a frequency and the frequency.
+fn muad_line(pane: Pane, label: &str, omega: &[f64], value: impl Fn(usize, f64) -> f64) -> ReferenceLine {
+    let level = Level::Sampled(omega.iter().enumerate().map(|(k, &omega)| [omega, value(k, omega)]).collect());
+    ReferenceLine { note: String::new(), pane, kind: ReferenceKind::Envelope, label: label.to_owned(), level }
 }
 
 /// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`, where that is asked for.
@@ -352,6 +370,23 @@ mod tests {
         let level = |unit| delay_rule(ReferenceKind::Delta, String::new(), 0.1, unit).level;
         assert_eq!(level(PhaseErrorUnit::Degree), Level::PerOmega(0.1f64.to_degrees()));
         assert_eq!(level(PhaseErrorUnit::Millisecond), Level::Constant(100.0));
+    }
+
+    #[test]
+    fn the_envelopes_about_a_response_are_those_of_model_over_reference() {
+        let omega: Arc<[f64]> = [2.0].into();
+        let curve = BodeCurve::new(CurveId::Corrected, Role::IdentifiedRepresentative);
+        let drawn = [curve.with(&omega, &[-6.0].into(), &[-90.0].into())];
+        let options = BodeOptions { shows_muad: true, ..BodeOptions::default() };
+        let muad = Muad::at(2.0);
+        let expected: Vec<Level> = [0, 1]
+            .into_iter()
+            .flat_map(|end| [-6.0 + muad.magnitude_db[end], -90.0 + muad.phase_deg[end]])
+            .map(|value| Level::Sampled(vec![[2.0, value]]))
+            .collect();
+        let lines = muad_about(&drawn, &options);
+        assert_eq!(lines.iter().map(|line| line.level.clone()).collect::<Vec<_>>(), expected);
+        assert!(muad_about(&drawn, &BodeOptions::default()).is_empty(), "on wish");
     }
 
     #[test]

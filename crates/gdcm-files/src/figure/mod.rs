@@ -22,15 +22,15 @@ use gdcm_core::correction::Channel;
 use std::sync::Arc;
 
 use gdcm_core::dataset::{ModelId, Pair};
-use gdcm_core::requirements::LevelBoundaries;
 use gdcm_core::study::{
-    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, Requirements,
-    Unobserved,
+    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, RecordHistory,
+    Requirements, TestAnswers, Unobserved,
 };
 
 mod assessment;
 mod axis;
 mod bode;
+mod coherence;
 mod condition_source;
 mod couplings;
 mod curve;
@@ -40,6 +40,7 @@ mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
 mod gains;
+mod histories;
 mod label_places;
 mod layout;
 mod leads;
@@ -56,6 +57,7 @@ mod units;
 pub use assessment::*;
 pub use axis::*;
 pub use bode::*;
+pub use coherence::*;
 pub use condition_source::*;
 pub use couplings::*;
 pub use curve::*;
@@ -64,6 +66,7 @@ pub use error::*;
 pub use evidence::*;
 pub use figure::*;
 pub use gains::*;
+pub use histories::*;
 pub use label_places::*;
 pub use layout::*;
 pub use leads::*;
@@ -151,6 +154,15 @@ impl FigureKind {
     }
 }
 
+/// What models answer over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverTime {
+    /// To a test input.
+    Test(Arc<TestAnswers>),
+    /// To a flight record, of which the input of this index is drawn.
+    Record(Arc<RecordHistory>, usize),
+}
+
 /// Which figure is wanted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureRequest {
@@ -174,8 +186,8 @@ pub struct FigureRequest {
     pub couplings: Option<Arc<CouplingsAssessment>>,
     /// What a qualification asks, where that is shown.
     pub requirements: Option<Arc<Requirements>>,
-    /// The engineer's levels of bandwidth and phase delay.
-    pub levels: LevelBoundaries,
+    /// What is shown over time in place of bandwidths.
+    pub over_time: Option<OverTime>,
 }
 
 impl FigureRequest {
@@ -194,7 +206,7 @@ impl FigureRequest {
             bode,
             couplings: None,
             requirements: None,
-            levels: LevelBoundaries::default(),
+            over_time: None,
         }
     }
 
@@ -227,7 +239,15 @@ impl FigureRequest {
             }
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
             FigureKind::Requirements => {
-                requirements_figure(self.requirements.as_deref()?, &analysis?.study.dataset, &self.levels)
+                let study = &analysis?.study;
+                match &self.over_time {
+                    Some(OverTime::Test(answers)) => return Some(test_answers_figure(answers, &study.dataset)),
+                    Some(OverTime::Record(history, input)) => {
+                        return Some(record_history_figure(history, &study.dataset, *input));
+                    }
+                    None => {}
+                }
+                requirements_figure(self.requirements.as_deref()?, &study.dataset, &study.requirements.levels)
             }
             FigureKind::Couplings => {
                 let shown = condition.map(|of| of.curves.condition.id());

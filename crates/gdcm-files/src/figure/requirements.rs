@@ -20,7 +20,7 @@ fn look(role: RequirementRole) -> (DotShape, Color) {
         RequirementRole::Physics => (DotShape::Circle, Color::of(Hue::Perturbed)),
         RequirementRole::Corrected => (DotShape::Square, Color::of(Hue::Corrected)),
         RequirementRole::Scheduled => (DotShape::Triangle, Color::of(Hue::Corrected)),
-        RequirementRole::Identified => (DotShape::Cross, Color::of(Hue::Identified)),
+        RequirementRole::Identified => (DotShape::Diamond, Color::of(Hue::Identified)),
     }
 }
 

@@ -117,7 +117,7 @@ impl Role {
             Self::Corrected => line(Hue::Corrected, 2.0, Dash::Solid),
             Self::Scheduled => line(Hue::Corrected, 1.6, Dash::Long),
             Self::WithoutLeads => line(Hue::Corrected, 1.4, Dash::ShortDashDot),
-            Self::Coupled => line(Hue::Perturbed, 1.8, Dash::ShortDashDot),
+            Self::Coupled => line(Hue::Perturbed, 2.0, Dash::ShortDashDot),
             Self::Variant => line(Hue::Corrected, 1.8, Dash::Dotted),
             Self::Rejected => line(Hue::Rejected, 1.0, Dash::Dotted),
             Self::OfAirspeed(step) => line(Hue::OfAirspeed(step), 1.8, Dash::Solid),

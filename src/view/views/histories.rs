@@ -1,0 +1,248 @@
+//! Requirements in time: flight records with the corridors about them and what the models answer, or a step or a doublet where there are
+//! no records (M17.2).
+
+use std::sync::Arc;
+
+use egui::{Button, CollapsingHeader, Grid, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use gdcm_core::requirements::{TestInput, TestInputShape, ToleranceTable};
+use gdcm_core::study::{
+    Analysis, Edit, HistoryRecord, RecordHistory, RecordHistoryJob, RequirementSettings, TestAnswersJob,
+};
+use gdcm_core::units::number;
+use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
+
+use super::{Need, RequirementsPage, View};
+use crate::view::command::Command;
+use crate::view::controls::{number_entry_ui, restore_panel_size};
+use crate::view::figures::figure_of;
+use crate::view::palette::Palette;
+use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::records::RecordsCommand;
+use crate::view::settings_panel::choice_ui;
+use crate::view::state::State;
+use crate::view::table_view::{TableLook, table_grid_ui};
+
+/// A plot is never smaller \[pt\].
+const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
+/// Part of the height that the table has at first.
+const TABLE_PART: f32 = 0.32;
+
+/// The record that is shown over time; none where there is none, or a test is shown in its place.
+fn record_job(state: &State) -> Option<RecordHistoryJob> {
+    let analysis = current(state)?;
+    let condition = state.condition().id();
+    let records = state.records.conditions.get(&condition).filter(|_| !state.display.shows_test)?;
+    let row = records.rows.get(records.chosen)?;
+    let record = HistoryRecord { flight: Arc::clone(row.used_flight()?), held_out: row.guess.held_out };
+    let tolerances = state.study.requirements.tolerances.clone();
+    Some(RecordHistoryJob { analysis, condition, record, preparation: records.preparation(), tolerances })
+}
+
+fn test_job(state: &State) -> Option<TestAnswersJob> {
+    let (condition, input) = (state.condition().id(), state.display.pair.input);
+    Some(TestAnswersJob { analysis: current(state)?, condition, input, test: state.study.requirements.test })
+}
+
+fn current(state: &State) -> Option<Arc<Analysis>> {
+    state.results.analysis.clone().filter(|_| state.analysis().is_some())
+}
+
+/// What is to be computed over time.
+pub fn over_time_need(state: &State) -> Option<Need> {
+    record_job(state).map(Need::RecordHistory).or_else(|| test_job(state).map(Need::TestAnswers))
+}
+
+/// What models answer over time, in words why there is nothing; none until it is computed.
+pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
+    match record_job(state) {
+        Some(job) => {
+            let found = state.record_history(&job)?.clone();
+            Some(found.map(|history| OverTime::Record(history, state.display.pair.input)))
+        }
+        None => Some(state.test_answers()?.clone().map(OverTime::Test)),
+    }
+}
+
+/// The same for a figure, where it is shown.
+pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
+    let is_shown = kind == FigureKind::Requirements && state.display.requirements_page == RequirementsPage::Histories;
+    over_time(state).filter(|_| is_shown)?.ok()
+}
+
+/// What is flown, or the test, and the answers of the models.
+pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    subject_ui(ui, state, palette, commands);
+    let found = match over_time(state) {
+        Some(Ok(found)) => found,
+        Some(Err(why)) => return drop(ui.label(palette.small_warning(why))),
+        None => return drop(ui.label(palette.dim(state.results.absence()))),
+    };
+    if let OverTime::Record(history, _) = &found {
+        restore_panel_size(ui, "tolerances");
+        let size = TABLE_PART * ui.available_height();
+        let panel = Panel::bottom("tolerances").resizable(true).default_size(size).min_size(60.0);
+        panel.show(ui, |ui| tolerances_ui(ui, state, history, palette, commands));
+    }
+    let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
+    ui.add(Label::new(palette.small(&figure.caption)).wrap());
+    figure_legend_ui(ui, &figure, palette);
+    let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let accented = match &found {
+        OverTime::Test(_) => Some(1 + state.display.pair.output),
+        OverTime::Record(..) => None,
+    };
+    let scene = FigureScene {
+        name: "requirements in time",
+        figure: &figure,
+        selected: None,
+        highlighted: None,
+        columns: &[],
+        zooms: true,
+        is_compact: false,
+        accented,
+        least: LEAST_PLOT,
+        message: "There is nothing to show",
+        words: (&HistoryWords { figure: &figure }, 0),
+    };
+    figure_ui(ui, &scene, &mut view, palette);
+    state.display.figures.insert(View::Requirements, view);
+}
+
+/// A record of the condition, or a test input.
+fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let records = state.records.conditions.get(&state.condition().id());
+    let rows = records.into_iter().flat_map(|records| records.used_rows());
+    let mut choices: Vec<(Option<usize>, &str, &str)> =
+        rows.map(|(index, row)| (Some(index), row.table.name.as_str(), "A flight record of this condition")).collect();
+    if choices.is_empty() {
+        let words = "No flight record of this condition is open (view Records): a test input in its place.";
+        ui.label(palette.small(words));
+    } else {
+        choices.push((None, "test input", "A step or a doublet of the input in focus, from rest"));
+        let shown = records.map(|records| records.chosen).filter(|_| !state.display.shows_test);
+        let mut chosen = shown;
+        choice_ui(ui, "What models answer to", &mut chosen, &choices);
+        if chosen != shown {
+            commands.push(Command::ShowTest(chosen.is_none()));
+            commands.extend(chosen.map(|index| RecordsCommand::Choose(index).into()));
+        }
+    }
+    if record_job(state).is_none() {
+        test_ui(ui, state, palette, commands);
+    }
+}
+
+/// Share of time inside and largest excess of every quantity and model; and the table of tolerances, to be edited.
+fn tolerances_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    history: &RecordHistory,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let table = history.table();
+    let is_outside = |row: usize| table.rows[row][5] != "none";
+    let color = |row: usize, column: usize| match column {
+        4 | 5 => Some(if is_outside(row) { palette.warning } else { palette.good }),
+        _ => None,
+    };
+    let look = TableLook { color: &color, selected: &|_| false };
+    ScrollArea::vertical().id_salt("tolerances").auto_shrink(false).show(ui, |ui| {
+        let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
+        title.show(ui, |ui| edited_tolerances_ui(ui, state, palette, commands));
+        ui.label(palette.small(&table.title));
+        let mut sorting = state.display.requirements_sorting;
+        table_grid_ui(ui, &table, &mut sorting, &look, palette, commands);
+        state.display.requirements_sorting = sorting;
+    });
+}
+
+/// Every row of the table of tolerances, in fields.
+fn edited_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let table = &state.study.requirements.tolerances;
+    let decided = |tolerances: ToleranceTable| {
+        let settings = RequirementSettings { tolerances, ..RequirementSettings::clone(&state.study.requirements) };
+        Command::from(Edit::SetRequirements("tolerances", Arc::new(settings)))
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(palette.small(format!("Source: {}", table.source())));
+        let is_default = *table == ToleranceTable::default();
+        if ui.add_enabled(!is_default, Button::new("Default tolerances").small()).clicked() {
+            commands.push(decided(ToleranceTable::default()));
+        }
+    });
+    let mut rows = table.rows().to_vec();
+    let mut is_changed = false;
+    Grid::new("tolerances in fields").num_columns(5).show(ui, |ui| {
+        for (index, row) in rows.iter_mut().enumerate() {
+            let number_of = index + 1;
+            ui.label(palette.small(format!("{} of {}", row.quantity, row.channel)));
+            let name = format!("Absolute tolerance {number_of}");
+            if let Some(Some(value)) = number_entry_ui(ui, &name, &number(row.absolute), "", 56.0, commands) {
+                (row.absolute, is_changed) = (value, true);
+            }
+            ui.label(palette.small(&row.unit));
+            let name = format!("Relative tolerance {number_of}");
+            let percent = row.relative.map_or_else(String::new, |part| number(100.0 * part));
+            if let Some(value) = number_entry_ui(ui, &name, &percent, "none", 56.0, commands) {
+                (row.relative, is_changed) = (value.map(|percent| 0.01 * percent), true);
+            }
+            ui.label(palette.small(format!("% of the change · {}", row.entry)));
+            ui.end_row();
+        }
+    });
+    if is_changed {
+        commands.push(match ToleranceTable::new("edited", rows) {
+            Ok(table) => decided(table),
+            Err(why) => Command::Refuse(why.to_string()),
+        });
+    }
+}
+
+/// Course, size and duration of the test input.
+fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let test = state.study.requirements.test;
+    let input = &state.dataset().inputs()[state.display.pair.input];
+    let decide = |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
+        Ok(test) => {
+            let settings = RequirementSettings { test, ..RequirementSettings::clone(&state.study.requirements) };
+            commands.push(Edit::SetRequirements(what, Arc::new(settings)).into());
+        }
+        Err(why) => commands.push(Command::Refuse(why.to_string())),
+    };
+    ui.horizontal_wrapped(|ui| {
+        let mut shape = test.shape;
+        let choices = [
+            (TestInputShape::Step, "step", "Held for the whole of its duration, then back to trim"),
+            (TestInputShape::Doublet, "doublet", "The first half of its duration to one side, the second to the other"),
+        ];
+        choice_ui(ui, "Course of the test input", &mut shape, &choices);
+        if shape != test.shape {
+            decide("course of the test input", TestInput { shape, ..test }, commands);
+        }
+        ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
+        let size = number_entry_ui(ui, "Size of the test input", &number(test.size), "", 56.0, commands);
+        if let Some(size) = size.flatten() {
+            decide("size of the test input", TestInput { size, ..test }, commands);
+        }
+        ui.label(palette.small(format!("{} for", input.unit)));
+        let duration = number_entry_ui(ui, "Duration of the test input", &number(test.duration_s), "", 56.0, commands);
+        if let Some(duration_s) = duration.flatten() {
+            decide("duration of the test input", TestInput { duration_s, ..test }, commands);
+        }
+        ui.label(palette.small("s"));
+    });
+}
+
+/// What the plots over time say.
+struct HistoryWords<'a> {
+    figure: &'a Figure,
+}
+
+impl FigureWords for HistoryWords<'_> {
+    fn plot(&self, plot: usize) -> String {
+        self.figure.plots.get(plot).map_or_else(String::new, |plot| format!("{} over time", plot.title))
+    }
+
+    fn pointed_ui(&self, _: &mut Ui, _: usize, _: &MarkId, _: [f64; 2]) {}
+}

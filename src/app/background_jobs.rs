@@ -140,6 +140,13 @@ impl BackgroundJobs {
             |app| needed(app, |need| if let Need::RecordHistory(job) = need { Some(job) } else { None }),
             |app, job, found| app.state.results.record_history = Some((job, found)),
         );
+        let time_histories = JobKind {
+            tell: |queue, background| background.time_histories = queue.progress(),
+            ..JobKind::new(
+                |app| needed(app, |need| if let Need::TimeHistories(job) = need { Some(job) } else { None }),
+                |app, job, found| app.state.results.time_histories = Some((job, found)),
+            )
+        };
         let variants = JobKind::new(
             |app| {
                 let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
@@ -177,6 +184,7 @@ impl BackgroundJobs {
             started("requirements", pool, requirements, replies)?,
             started("test input", pool, test_answers, replies)?,
             started("record in time", pool, record_history, replies)?,
+            started("answers to records", pool, time_histories, replies)?,
             started("variants", engine(), variants, replies)?,
             started("simulation", pool, simulations, replies)?,
             started("report", engine(), reports, replies)?,

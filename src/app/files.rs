@@ -3,15 +3,14 @@
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use crate::view::assembling::AssemblingCommand;
 use crate::view::records::RecordsCommand;
-use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, State};
-use gdcm_core::study::{Difference, Edit, RequirementSettings, Study};
+use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, RequirementTable, State};
+use gdcm_core::study::{Difference, Study};
 use gdcm_files::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
-    file_exists, holds_models, load_any, open_study_of, read_levels, recent_files, save_study,
+    file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
 };
 
 use super::{GdcmApp, caught};
@@ -49,8 +48,8 @@ pub(super) enum DialogPurpose {
     ModelFolder,
     /// A folder of flight records.
     RecordFolder,
-    /// A file of levels of bandwidth and phase delay.
-    Levels,
+    /// A file of a table that requirements are asked with.
+    RequirementTable(RequirementTable),
 }
 
 /// What waits for the answer whether the decisions that are not saved may be lost.
@@ -261,7 +260,7 @@ impl GdcmApp {
             DialogPurpose::ExportFolder => *self.state.forms.typed_in(FormKind::Export) = path.display().to_string(),
             DialogPurpose::ModelFolder => self.assemble(AssemblingCommand::Add(vec![path])),
             DialogPurpose::RecordFolder => self.records(RecordsCommand::Add(vec![path])),
-            DialogPurpose::Levels => self.read_levels(&path),
+            DialogPurpose::RequirementTable(table) => self.read_requirement_table(table, path),
         }
     }
 
@@ -273,23 +272,10 @@ impl GdcmApp {
                 *self.state.forms.typed_in(FormKind::Save) = self.proposed_name();
                 self.state.forms.shown = Some(FormKind::Save);
             }
-            DialogPurpose::ExportFolder
-            | DialogPurpose::ModelFolder
-            | DialogPurpose::RecordFolder
-            | DialogPurpose::Levels => {}
-        }
-    }
-
-    /// Takes the levels of bandwidth and phase delay of a file into the study.
-    pub(super) fn read_levels(&mut self, path: &Path) {
-        let path = self.at_home(path.to_owned());
-        match read_levels(&path) {
-            Err(error) => self.notify_error(error.to_string()),
-            Ok(levels) => {
-                let settings =
-                    RequirementSettings { levels, ..RequirementSettings::clone(&self.state.study.requirements) };
-                self.decide(&Edit::SetRequirements("levels", Arc::new(settings)));
+            DialogPurpose::RequirementTable(table) => {
+                self.state.forms.shown = Some(FormKind::ReadRequirementTable(table));
             }
+            DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder => {}
         }
     }
 
@@ -376,8 +362,12 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
         }
         DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
         DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
-        DialogPurpose::Levels => {
-            dialog.set_title("Levels of bandwidth and phase delay").add_filter("levels", &["json"]).pick_file()
+        DialogPurpose::RequirementTable(table) => {
+            let title = match table {
+                RequirementTable::Levels => "Levels of bandwidth and phase delay",
+                RequirementTable::Tolerances => "Tolerances of time histories",
+            };
+            dialog.set_title(title).add_filter("tables", &["json"]).pick_file()
         }
         DialogPurpose::ExportFolder => dialog.set_title("Export corrections to a folder").pick_folder(),
     }

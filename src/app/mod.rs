@@ -12,6 +12,7 @@ mod records;
 mod recovery;
 mod reload;
 mod report;
+mod requirement_tables;
 pub mod threads;
 mod update;
 mod window;

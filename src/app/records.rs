@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, WantedDataset};
+use crate::view::views::RequirementsPage;
 use crate::view::{FormKind, View};
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
@@ -129,11 +130,14 @@ impl GdcmApp {
         }
     }
 
-    /// Reads the records that belong to the condition shown, once its view is shown.
+    /// Reads the records that belong to the condition shown, once a view that needs them is shown.
     pub(super) fn look_for_records(&mut self) {
         let condition = self.state.condition();
         let id = condition.id();
-        let is_shown = self.state.display.arrangement.is_shown(View::Records);
+        let display = &self.state.display;
+        let is_compared = display.requirements_page == RequirementsPage::Histories;
+        let is_shown = display.arrangement.is_shown(View::Records)
+            || display.arrangement.is_shown(View::Requirements) && is_compared;
         let bench = &self.state.records;
         if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
             return;

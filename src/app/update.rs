@@ -175,8 +175,12 @@ impl GdcmApp {
                 display.shows_test = shown;
                 display.figures.remove(&View::Requirements);
             }
-            Command::ReadLevels(path) => self.read_levels(&path),
-            Command::AskLevels => self.ask_path(DialogPurpose::Levels, String::new()),
+            Command::ReadRequirementTable(table, path) => self.read_requirement_table(table, path),
+            Command::AskRequirementTable(table) => {
+                self.ask_path(DialogPurpose::RequirementTable(table), String::new());
+            }
+            Command::AskWriteTolerances => self.ask_write_tolerances(),
+            Command::WriteTolerances(path) => self.write_tolerances(path),
             Command::AskOpen => self.ask_path(DialogPurpose::Open, String::new()),
             Command::AskSaveStudy => self.ask_path(DialogPurpose::SaveStudy, self.proposed_name()),
             Command::AskExportFolder => self.ask_path(DialogPurpose::ExportFolder, String::new()),

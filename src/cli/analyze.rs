@@ -24,7 +24,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
 /// Analyses, and writes all that was found and done as one page.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
-    let outputs = outputs.also_reading(arguments.histories.files());
+    let outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
     outputs.check(&[&arguments.out])?;
     let ending = arguments.out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
@@ -32,11 +32,11 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         let reason = format!("expected a name that ends in .html, found {found}; a browser prints the report as PDF");
         return Err(Failure::Option { option: "--out", reason });
     }
-    let (tolerances, records) = (arguments.histories.tolerance_table()?, arguments.histories.read(&study.dataset)?);
+    let records = arguments.histories.read(&study.dataset)?;
     let (analysis, mut engine) = analysis_of(study, &arguments.study, false)?;
     let histories = match arguments.histories.records.as_slice() {
         [] => None,
-        _ => Some(time_histories(&analysis, &records, &tolerances)?),
+        _ => Some(time_histories(&analysis, &records)?),
     };
     let study_file = arguments.study.file.as_deref().filter(|file| loaded.path() != Some(file));
     let source = ReportSource::of(&loaded, study_file);

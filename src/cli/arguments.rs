@@ -227,6 +227,10 @@ pub struct StudyArguments {
     /// File of the levels that bandwidth and phase delay are drawn with (docs/requirements.md).
     #[arg(long, value_name = "FILE")]
     pub levels: Option<PathBuf>,
+    /// File of the tolerances of time histories; without it, those of the study, which are at first those of 14 CFR part 60, appendix
+    /// C, table C2A (docs/requirements.md).
+    #[arg(long, value_name = "FILE")]
+    pub tolerances: Option<PathBuf>,
     /// Reject every physics model that is suggested as an outlier.
     #[arg(long)]
     pub reject_suggested: bool,
@@ -359,7 +363,7 @@ pub struct RequirementsArguments {
     /// What models are compared with in time.
     #[command(flatten)]
     pub histories: HistoryArguments,
-    /// Write the table of tolerances, the default or that of --tolerances, as a file to edit; without --out, nothing else is done.
+    /// Write the table of tolerances as a file to edit; without --out, nothing else is done.
     #[arg(long, value_name = "FILE")]
     pub write_tolerances: Option<PathBuf>,
     /// Directory for requirements.json and requirements.csv; made where there is none.

@@ -1,4 +1,4 @@
-//! The flight records that models are compared with in time, and the table of tolerances (M17.2).
+//! The flight records that models are compared with in time (M17.2).
 
 use std::path::{Path, PathBuf};
 
@@ -8,39 +8,22 @@ use gdcm_core::identification::Preparation;
 use gdcm_core::records::{
     LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
 };
-use gdcm_core::requirements::ToleranceTable;
 use gdcm_core::study::{Analysis, Execution, HistoryRecords, TimeHistories, time_histories_of};
-use gdcm_files::{FoundRecords, load_tolerances, read_records};
+use gdcm_files::{FoundRecords, read_records};
 
 use super::{Failure, ReadingProgress, TerminalProgress, caution, note};
 use crate::executor::Pool;
 
-/// What models are compared with in time, and how closely.
+/// What models are compared with in time.
 #[derive(Debug, Args)]
 pub struct HistoryArguments {
     /// Flight records, each of the condition that its name says: files, or folders with all that is in them. The models answer to their
     /// sticks, and their share of time within tolerances is told; may be repeated.
     #[arg(long, value_name = "PATH")]
     pub records: Vec<PathBuf>,
-    /// The table of tolerances; without it, that of 14 CFR part 60, appendix C, table C2A.
-    #[arg(long, value_name = "FILE")]
-    pub tolerances: Option<PathBuf>,
 }
 
 impl HistoryArguments {
-    /// The files that are read, which are never replaced.
-    pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
-        self.records.iter().chain(&self.tolerances).cloned()
-    }
-
-    /// The table that is asked for; what is odd about its file is told on standard error.
-    pub(super) fn tolerance_table(&self) -> Result<ToleranceTable, Failure> {
-        let Some(path) = &self.tolerances else { return Ok(ToleranceTable::default()) };
-        let (table, cautions) = load_tolerances(path)?;
-        cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
-        Ok(table)
-    }
-
     /// The records of each condition; what is not taken is told on standard error.
     pub(super) fn read(&self, dataset: &Dataset) -> Result<Vec<HistoryRecords>, Failure> {
         if self.records.is_empty() {
@@ -70,14 +53,10 @@ impl HistoryArguments {
 }
 
 /// The answers of the models to records, with a word about how far it is on a terminal.
-pub(super) fn time_histories(
-    analysis: &Analysis,
-    records: &[HistoryRecords],
-    tolerances: &ToleranceTable,
-) -> Result<TimeHistories, Failure> {
+pub(super) fn time_histories(analysis: &Analysis, records: &[HistoryRecords]) -> Result<TimeHistories, Failure> {
     let progress = TerminalProgress::new("simulating records");
     let execution = Execution::new(&Pool, &progress, HistoryRecords::steps(records));
-    Ok(time_histories_of(analysis, records, tolerances, &execution)?)
+    Ok(time_histories_of(analysis, records, &analysis.study.requirements.tolerances, &execution)?)
 }
 
 /// A record and its condition, as the dataset says of it where it does; none where it has no condition, or its columns are not clear.

@@ -11,27 +11,29 @@ use gdcm_core::units::s_to_ms;
 use gdcm_files::{OutputSet, REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
 
 use super::{
-    Failure, LABEL, RequirementsArguments, TerminalProgress, analysis_of, by_words, caution_of, counted, existing,
-    indented, labelled, listed_conditions, note, say, study_of, time_histories,
+    Failure, LABEL, RequirementsArguments, TerminalProgress, analysis_of, by_words, caution_of, counted, indented,
+    labelled, listed_conditions, note, say, study_of, time_histories,
 };
 
 /// Writes the table of tolerances where that is asked for; analyses, writes the requirements, and prints a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let histories = &arguments.histories;
-    let tolerances = histories.tolerance_table()?;
+    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
+    let mut outputs = outputs.also_reading(histories.records.iter().cloned());
     let written = match &arguments.write_tolerances {
-        Some(path) => write_tolerances(&tolerances, path, arguments)?,
+        Some(path) => add_tolerances_to(&study.requirements.tolerances, path, &mut outputs)?,
         None => String::new(),
     };
-    let Some(out) = &arguments.out else { return say(&written) };
-    let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
-    let outputs = outputs.also_reading(histories.files());
+    let Some(out) = &arguments.out else {
+        outputs.persist()?;
+        return say(&written);
+    };
     outputs.check(&requirement_paths(out))?;
     make_directory(out)?;
     let records = histories.read(&study.dataset)?;
     let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
     let requirements = engine.requirements(&analysis, &TerminalProgress::new("reading bandwidths"))?;
-    let histories = time_histories(&analysis, &records, &tolerances)?;
+    let histories = time_histories(&analysis, &records)?;
     let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
     write_requirements((&requirements, &histories), dataset, out, outputs)?;
     tell_cautions(&requirements, &histories);
@@ -45,16 +47,9 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     say(&(text + &written))
 }
 
-/// Writes the table of tolerances, and gives the line that says so.
-fn write_tolerances(
-    tolerances: &ToleranceTable,
-    path: &Path,
-    arguments: &RequirementsArguments,
-) -> Result<String, Failure> {
-    let inputs = arguments.study.file.iter().cloned().chain(arguments.histories.files()).collect();
-    let mut outputs = OutputSet::new(existing(arguments.force), inputs);
-    add_tolerances(tolerances, path, &mut outputs)?;
-    outputs.persist()?;
+/// Adds the table of tolerances to what is written, and gives the line that says so.
+fn add_tolerances_to(tolerances: &ToleranceTable, path: &Path, outputs: &mut OutputSet) -> Result<String, Failure> {
+    add_tolerances(tolerances, path, outputs)?;
     Ok(labelled(
         0,
         "Tolerances",
@@ -150,19 +145,27 @@ fn summary_section(requirements: &Requirements) -> String {
         + &indented(&table, 2)
 }
 
-/// How many modes of the physics models are within their tolerances.
+/// How many modes of the physics models, and of the corrected ones where couplings move them, are within their tolerances.
 fn mode_section(requirements: &Requirements) -> String {
-    let count = |verdict: ModeVerdict| requirements.modes.iter().filter(|mode| mode.verdict == verdict).count();
-    let words = format!(
-        "of physics against identified: {} within the tolerance, {} outside, {} not determined by flight, {} without a tolerance, {} \
-         without a counterpart",
-        count(ModeVerdict::Within),
-        count(ModeVerdict::Outside),
-        count(ModeVerdict::NotDetermined),
-        count(ModeVerdict::NoTolerance),
-        count(ModeVerdict::NotPaired)
-    );
-    labelled(0, "Modes", LABEL, &words)
+    let counted = |model: &str, verdicts: &[ModeVerdict]| {
+        let count = |verdict: ModeVerdict| verdicts.iter().filter(|of| **of == verdict).count();
+        format!(
+            "of {model} against identified: {} within the tolerance, {} outside, {} not determined by flight, {} without a tolerance, \
+             {} without a counterpart",
+            count(ModeVerdict::Within),
+            count(ModeVerdict::Outside),
+            count(ModeVerdict::NotDetermined),
+            count(ModeVerdict::NoTolerance),
+            count(ModeVerdict::NotPaired)
+        )
+    };
+    let physics: Vec<ModeVerdict> = requirements.modes.iter().map(|mode| mode.verdict).collect();
+    let corrected: Vec<ModeVerdict> = requirements.modes.iter().filter_map(|mode| mode.corrected_verdict).collect();
+    let mut text = labelled(0, "Modes", LABEL, &counted("physics", &physics));
+    if !corrected.is_empty() {
+        text.push_str(&labelled(0, "", LABEL, &counted("corrected with its couplings", &corrected)));
+    }
+    text
 }
 
 /// Share of time inside the tolerances where a model is outside, condition by condition; and the rms errors.
@@ -185,9 +188,14 @@ fn history_section(histories: &TimeHistories) -> String {
          rows, in which every model is always inside, are left out:",
         all - table.rows.len()
     );
-    let rms = histories.rms_table();
+    let costs = histories.cost_table();
     labelled(0, HEADING, LABEL, &words)
         + &indented(&Table { title: String::new(), ..table }, 2)
-        + &labelled(0, "", LABEL, "rms error J_rms [deg, deg/s, ft/s, ft/s^2], over all records of a condition:")
-        + &indented(&Table { title: String::new(), ..rms }, 2)
+        + &labelled(
+            0,
+            "",
+            LABEL,
+            "rms error J_rms [deg, deg/s, ft/s, ft/s^2] and Theil's coefficients, over all records of a condition:",
+        )
+        + &indented(&Table { title: String::new(), ..costs }, 2)
 }

@@ -7,7 +7,7 @@ use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
-use gdcm_files::{LoadedDataset, OutputSet, embedded_example, read_levels};
+use gdcm_files::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
 
 use super::open as open_file;
 use super::{
@@ -32,7 +32,12 @@ pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study
         caution(&format!("{}: {words}", loaded.origin));
     }
     take_options(&mut study, arguments)?;
-    let inputs = arguments.file.iter().chain(&arguments.levels).cloned().chain(loaded.origin.file()).collect();
+    let inputs = [&arguments.file, &arguments.levels, &arguments.tolerances]
+        .into_iter()
+        .flatten()
+        .cloned()
+        .chain(loaded.origin.file())
+        .collect();
     Ok((study, loaded, OutputSet::new(existing(force), inputs)))
 }
 
@@ -123,6 +128,11 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
             let (unknown, outputs) = (unknown.join(", "), outputs.join(", "));
             caution(&sanitized(&format!("levels of {unknown} are drawn nowhere: outputs are {outputs}")));
         }
+    }
+    if let Some(path) = &arguments.tolerances {
+        let (tolerances, cautions) = load_tolerances(path)?;
+        cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
+        settings.tolerances = tolerances;
     }
     if settings != *study.requirements {
         let edit = Edit::SetRequirements("options", Arc::new(settings));

@@ -339,6 +339,10 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
         (0, Some(_)) => "curves …".to_owned(),
         (0, None) if background.bars.is_some() => bar_words(background.bars.unwrap_or_default()),
+        (0, None) if background.time_histories.is_some() => {
+            let (done, total) = background.time_histories.unwrap_or_default();
+            format!("answers to flight records, {} % …", 100 * done / total.max(1))
+        }
         (0, None) if background.views > 0 => "what the views show …".to_owned(),
         (0, None) => "what holding and releasing would cost …".to_owned(),
     }

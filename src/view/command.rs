@@ -87,10 +87,14 @@ pub enum Command {
     ShowRequirements(RequirementsPage),
     /// Over time, show answers to a test input, or to the records.
     ShowTest(bool),
-    /// Choose a file of levels with the desktop's dialog.
-    AskLevels,
-    /// Take the levels of a file.
-    ReadLevels(PathBuf),
+    /// Choose a file of levels, or of tolerances, with the desktop's dialog.
+    AskRequirementTable(RequirementTable),
+    /// Ask where to write the tolerances.
+    AskWriteTolerances,
+    /// Take the levels, or the tolerances, of a file.
+    ReadRequirementTable(RequirementTable, PathBuf),
+    /// Write the tolerances of the study to a file.
+    WriteTolerances(PathBuf),
     /// Show how a value was computed, or put that away.
     Explain(Option<ExplainTarget>),
     /// Read frequencies in another unit.
@@ -202,6 +206,15 @@ pub enum Command {
     Quit,
 }
 
+/// A table that requirements are asked with, which is a file of the engineer's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RequirementTable {
+    /// Levels of bandwidth and phase delay.
+    Levels,
+    /// Tolerances of time histories.
+    Tolerances,
+}
+
 /// A form in front of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
@@ -227,6 +240,10 @@ pub enum FormKind {
     SaveFigure,
     /// Where to write the report, by path.
     Report,
+    /// Which file of a table to take, by path.
+    ReadRequirementTable(RequirementTable),
+    /// Where to write the tolerances, by path.
+    WriteTolerances,
     /// Every command, found by its name.
     Palette,
     /// Whether to lose unsaved decisions.

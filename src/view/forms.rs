@@ -13,8 +13,8 @@ use gdcm_files::figure::ColumnWidth;
 
 use super::records::{RecordsCommand, WantedDataset};
 use super::{
-    Command, FormKind, Forms, Palette, State, command_palette_ui, is_entered, keys_page_ui, name_text_field,
-    named_switch, text_field_ui,
+    Command, FormKind, Forms, Palette, RequirementTable, State, command_palette_ui, is_entered, keys_page_ui,
+    name_text_field, named_switch, text_field_ui,
 };
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -63,7 +63,7 @@ struct PathWords {
 }
 
 /// Every form that asks for a path and for nothing else but one choice.
-const PATHS: [PathWords; 7] = [
+const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
         title: "Open a dataset or a study",
@@ -111,6 +111,31 @@ const PATHS: [PathWords; 7] = [
         hint: "path of a .html file",
         explanation: "All that was done and found as one page with every plot, to read in a browser and to print.",
         submit: "Write report",
+    },
+    PathWords {
+        kind: FormKind::ReadRequirementTable(RequirementTable::Levels),
+        title: "Levels of bandwidth and phase delay",
+        field: "Path of the levels",
+        hint: "path of a .json file",
+        explanation: "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]. None is built in: boundaries depend on the \
+                      task and the category (docs/requirements.md).",
+        submit: "Take levels",
+    },
+    PathWords {
+        kind: FormKind::ReadRequirementTable(RequirementTable::Tolerances),
+        title: "Tolerances of time histories",
+        field: "Path of the tolerances",
+        hint: "path of a .json file",
+        explanation: "A file as Save tolerances… writes it (docs/requirements.md).",
+        submit: "Take tolerances",
+    },
+    PathWords {
+        kind: FormKind::WriteTolerances,
+        title: "Save the tolerances",
+        field: "Path to save the tolerances",
+        hint: "path of a .json file",
+        explanation: "A file of their own, for other studies and for gdcm requirements --tolerances.",
+        submit: "Save tolerances",
     },
     PathWords {
         kind: FormKind::ExportAs,
@@ -174,6 +199,8 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
         FormKind::SaveTable => Command::SaveTable(forms.table.clone()?, path),
         FormKind::SaveFigure => Command::SaveFigure(forms.figure?, forms.figure_width, path),
         FormKind::Report => Command::WriteReport(path),
+        FormKind::ReadRequirementTable(table) => Command::ReadRequirementTable(table, path),
+        FormKind::WriteTolerances => Command::WriteTolerances(path),
         FormKind::ExportAs => Command::ExportAs(forms.export_format, path),
         _ => return None,
     })

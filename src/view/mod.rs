@@ -40,7 +40,7 @@ pub mod views;
 
 pub use arrangement::{Arrangement, Need, View, ViewGroup, ViewTitle};
 pub use bars::Bar;
-pub use command::{Command, FormKind};
+pub use command::{Command, FormKind, RequirementTable};
 pub use command_palette::{PaletteForm, command_palette_ui};
 pub use command_table::{Entry, Menu, Reach, every_command};
 pub use controls::{

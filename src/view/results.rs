@@ -8,8 +8,8 @@ use gdcm_core::identification::Validation;
 use gdcm_core::study::{
     AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, ModesJob, RecordHistory,
-    RecordHistoryJob, Requirements, RequirementsJob, SimulationJob, TestAnswers, TestAnswersJob, Toggles, TogglesJob,
-    Uncertainty, UncertaintyJob, VariantJob,
+    RecordHistoryJob, Requirements, RequirementsJob, SimulationJob, TestAnswers, TestAnswersJob, TimeHistories,
+    TimeHistoriesJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
 };
 
 /// The result of the condition shown, ahead of the others'.
@@ -39,6 +39,8 @@ pub struct Background {
     /// Whether error bars are being computed: steps done, of how many (for each model its response, and the analysis with it in place
     /// of the representative).
     pub bars: Option<(usize, usize)>,
+    /// Whether models answer to all records: steps done, of how many.
+    pub time_histories: Option<(usize, usize)>,
     /// Jobs that the views shown wait for.
     pub views: usize,
     /// Whether a report is being written: conditions done, of how many.
@@ -56,6 +58,7 @@ impl Background {
             || self.toggles
             || self.curves.is_some()
             || self.bars.is_some()
+            || self.time_histories.is_some()
             || self.views > 0
             || self.report.is_some()
             || self.identification.is_some()
@@ -89,6 +92,8 @@ pub struct Results {
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
     /// One record against the tolerances; see [`super::state::State::record_history`].
     pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
+    /// What the models answer to all records, and of what; see [`super::state::State::time_histories`].
+    pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
     /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
     /// Models against a record in time, or in words why not.

@@ -8,7 +8,7 @@ use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
     AcrossCurves, Analysis, AssessedCouplings, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure,
     ConditionModes, CouplingsJob, Difference, History, RecordHistory, RecordHistoryJob, Requirements, Study, Table,
-    TestAnswers, Toggles, Uncertainty,
+    TestAnswers, TimeHistories, Toggles, Uncertainty,
 };
 use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_files::ExportFormat;
@@ -16,7 +16,7 @@ use gdcm_files::figure::ColumnWidth;
 
 use super::assembling::AssemblyState;
 use super::records::RecordsState;
-use super::views::assessment_choice;
+use super::views::{all_records, assessment_choice};
 use super::{Bar, Display, FirstResult, FormKind, PaletteForm, Results, View};
 
 /// How a message is meant.
@@ -250,6 +250,12 @@ impl State {
     pub fn record_history(&self, job: &RecordHistoryJob) -> Option<&Result<Arc<RecordHistory>, String>> {
         let (known, found) = self.results.record_history.as_ref()?;
         (known.condition == job.condition && known.record == job.record).then_some(found)
+    }
+
+    /// What the models answer to all records; of an older analysis of the same records until it is there.
+    pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
+        let (job, found) = self.results.time_histories.as_ref()?;
+        (job.records == all_records(self)).then_some(found)
     }
 
     /// What couplings do to the study as it is; those of older settings until new ones are there.

@@ -93,7 +93,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let analysis = Analysis { uncertainty, ..ANALYSIS.clone() };
     let requirements = engine.requirements(&analysis, &Unobserved).unwrap();
     let cells = texts(&parsed(&REPORT), "td");
-    for row in requirements.summary_table().rows {
+    for row in requirements.summary_table(None).rows {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
     let known = requirements.bandwidth.iter().find(|of| of.omega_bw_rad_s.is_some()).unwrap();
@@ -113,7 +113,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let source = ReportSource::of(&EXAMPLE, None);
     let report = report((&analysis, Some(&histories)), &source, engine, &Unobserved).unwrap();
     let cells = texts(&parsed(&report), "td");
-    for row in histories.share_table().rows.into_iter().chain(histories.rms_table().rows) {
+    for row in histories.share_table().rows.into_iter().chain(histories.cost_table().rows) {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
     assert!(report.contains("Conditions 1, 2, 4, 5, 6, 7, 8, 9, 10, 11: no flight record of it was given."));

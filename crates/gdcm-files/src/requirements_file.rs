@@ -204,7 +204,8 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
         numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
     };
     let physics = finding.physics.iter().flat_map(|numbers| rows("physics", numbers));
-    rows("identified", &finding.identified).into_iter().chain(physics).collect()
+    let corrected = finding.corrected.iter().flat_map(|numbers| rows("corrected", numbers));
+    rows("identified", &finding.identified).into_iter().chain(physics).chain(corrected).collect()
 }
 
 fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {

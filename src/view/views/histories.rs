@@ -12,8 +12,8 @@ use gdcm_core::units::number;
 use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
 
 use super::{Need, RequirementsPage, View};
-use crate::view::command::Command;
-use crate::view::controls::{number_entry_ui, restore_panel_size};
+use crate::view::command::{Command, RequirementTable};
+use crate::view::controls::{button_ui, number_entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
@@ -115,7 +115,10 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     let mut choices: Vec<(Option<usize>, &str, &str)> =
         rows.map(|(index, row)| (Some(index), row.table.name.as_str(), "A flight record of this condition")).collect();
     if choices.is_empty() {
-        let words = "No flight record of this condition is open (view Records): a test input in its place.";
+        let words = match &state.records.reading {
+            Some(reading) => format!("reading {} …", reading.name),
+            None => "No flight record of this condition is used (view Records): a test input in its place.".to_owned(),
+        };
         ui.label(palette.small(words));
     } else {
         choices.push((None, "test input", "A step or a doublet of the input in focus, from rest"));
@@ -170,6 +173,11 @@ fn edited_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands:
         if ui.add_enabled(!is_default, Button::new("Default tolerances").small()).clicked() {
             commands.push(decided(ToleranceTable::default()));
         }
+        let hint = "Take the tolerances of a file into the study";
+        let ask = Command::AskRequirementTable(RequirementTable::Tolerances);
+        button_ui(ui, Button::new("Open tolerances…").small(), hint, ask, commands);
+        let hint = "Write them to a file of their own, for other studies";
+        button_ui(ui, Button::new("Save tolerances…").small(), hint, Command::AskWriteTolerances, commands);
     });
     let mut rows = table.rows().to_vec();
     let mut is_changed = false;

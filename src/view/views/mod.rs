@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::Ui;
 use gdcm_core::study::{
     AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
-    SimulationJob, TestAnswersJob, VariantJob,
+    SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
 };
 use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
@@ -242,10 +242,7 @@ impl View {
                 tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
                 tools_width: 130.0,
                 is_of_all_conditions: true,
-                needs: |state| match state.display.requirements_page {
-                    RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
-                    _ => requirements_job(state).map(Need::Requirements).into_iter().collect(),
-                },
+                needs: requirements_needs,
                 figure: Some(FigureKind::Requirements),
                 ..ViewKind::new(
                     "Requirements",
@@ -370,4 +367,6 @@ pub enum Need {
     TestAnswers(TestAnswersJob),
     /// What they answer to a flight record.
     RecordHistory(RecordHistoryJob),
+    /// What they answer to all of them.
+    TimeHistories(TimeHistoriesJob),
 }

@@ -4,19 +4,22 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Button, Color32, Label, Panel, Ui, Vec2, vec2};
-use gdcm_core::dataset::Pair;
+use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
-use gdcm_core::study::{Edit, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table};
+use gdcm_core::study::{
+    Edit, HistoryRecords, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table, TimeHistoriesJob,
+};
 use gdcm_core::units::{s_to_ms, telling};
 use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs};
 
-use super::{View, histories_ui};
+use super::{Need, View, histories_ui, over_time_need};
 use crate::view::CurveCommand;
-use crate::view::command::Command;
-use crate::view::controls::{button_ui, check_ui, entry_ui, restore_panel_size};
+use crate::view::command::{Command, RequirementTable};
+use crate::view::controls::{button_ui, check_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::records::ConditionRecords;
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
@@ -61,7 +64,40 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 /// The job of what is shown; none until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
-    Some(RequirementsJob { analysis, uncertainty: state.uncertainty().cloned(), settings: Arc::clone(&state.study.requirements) })
+    Some(RequirementsJob {
+        analysis,
+        uncertainty: state.uncertainty().cloned(),
+        settings: Arc::clone(&state.study.requirements),
+    })
+}
+
+/// What the page that is chosen has to have computed.
+pub fn requirements_needs(state: &State) -> Vec<Need> {
+    match state.display.requirements_page {
+        RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
+        page => {
+            let of_records = time_histories_job(state).filter(|_| page == RequirementsPage::Summary);
+            let asked = requirements_job(state).map(Need::Requirements);
+            asked.into_iter().chain(of_records.map(Need::TimeHistories)).collect()
+        }
+    }
+}
+
+/// The flight records of every condition that are used.
+pub fn all_records(state: &State) -> Vec<HistoryRecords> {
+    let of_condition = |(id, records): (&ConditionId, &ConditionRecords)| {
+        HistoryRecords::of(*id, &records.rows, records.preparation())
+    };
+    let all = state.records.conditions.iter().map(of_condition);
+    all.filter(|of| !of.records.is_empty()).collect()
+}
+
+/// The answers of all models to all records; none where there are none.
+fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
+    let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
+    let records = all_records(state);
+    let tolerances = state.study.requirements.tolerances.clone();
+    (!records.is_empty()).then_some(TimeHistoriesJob { analysis, records, tolerances })
 }
 
 /// The page that is chosen, below what has to be known of all of them.
@@ -133,13 +169,9 @@ fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Co
         if levels > 0 && ui.small_button("Remove levels").clicked() {
             commands.push(decided("levels", &|settings| settings.levels = LevelBoundaries::default()));
         }
-        let hint = "path of a file of levels, as JSON";
-        if let Some(path) = entry_ui(ui, "File of levels", "", hint, 200.0).filter(|path| !path.trim().is_empty()) {
-            commands.push(Command::ReadLevels(path.trim().into()));
-        }
-        let hint = "[{\"name\": \"Level 1\", \"axis\": \"P\", \"points\": [[rad/s, s], …]}]: none is built in, for they depend on the task and \
-                    the category (docs/requirements.md)";
-        button_ui(ui, Button::new("Levels…").small(), hint, Command::AskLevels, commands);
+        let hint = "Take the levels of a file: none is built in, for they depend on the task and the category (docs/requirements.md)";
+        let ask = Command::AskRequirementTable(RequirementTable::Levels);
+        button_ui(ui, Button::new("Levels…").small(), hint, ask, commands);
     });
 }
 
@@ -178,7 +210,7 @@ fn plots_ui(
 }
 
 /// The response in focus in Bode, with the frequencies marked that its bandwidth and phase delay are read at.
-fn marked_in_bode(requirements: &Requirements, pair: Pair, id: gdcm_core::dataset::ConditionId) -> Vec<Command> {
+fn marked_in_bode(requirements: &Requirements, pair: Pair, id: ConditionId) -> Vec<Command> {
     let mut commands = vec![Command::SelectCondition(id), Command::FocusPair(pair), CurveCommand::UnpinCursors.into()];
     if let Some(of) = requirements.bandwidth_of(id, pair, RequirementRole::Corrected) {
         let crossings = [of.omega_bw_rad_s, of.omega_180_rad_s];
@@ -199,7 +231,10 @@ fn requirements_table_ui(
     let (table, color) = match state.display.requirements_page {
         RequirementsPage::Bandwidth => (requirements.bandwidth_table(state.dataset()), CellColor::None),
         RequirementsPage::Modes => (requirements.mode_table(id), CellColor::Modes),
-        RequirementsPage::Histories | RequirementsPage::Summary => (requirements.summary_table(), CellColor::Summary),
+        RequirementsPage::Histories | RequirementsPage::Summary => {
+            let histories = state.time_histories().filter(|_| time_histories_job(state).is_some());
+            (requirements.summary_table(histories.map(Arc::as_ref)), CellColor::Summary)
+        }
     };
     ui.add(Label::new(palette.small(&table.title)).truncate());
     if table.rows.is_empty() {
@@ -210,20 +245,21 @@ fn requirements_table_ui(
     let look = TableLook { color: &color, selected: &selected };
     let mut sorting = state.display.requirements_sorting;
     if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands) {
-        commands.extend(went_to(state, requirements, click.row));
+        commands.extend(went_to(state, requirements, (&table, click.row)));
     }
     state.display.requirements_sorting = sorting;
 }
 
 /// Where a click on a row goes.
-fn went_to(state: &State, requirements: &Requirements, row: usize) -> Vec<Command> {
+fn went_to(state: &State, requirements: &Requirements, (table, row): (&Table, usize)) -> Vec<Command> {
     match state.display.requirements_page {
         RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
             of.map(|of| marked_in_bode(requirements, of.pair, of.condition)).unwrap_or_default()
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
-            requirements.summary.get(row).map(|of| Command::SelectCondition(of.condition)).into_iter().collect()
+            let id = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
+            id.map(|id| Command::SelectCondition(ConditionId(id))).into_iter().collect()
         }
         RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
     }
@@ -256,14 +292,14 @@ impl CellColor {
                 let rests = |name: &&&str| of.rests_above(name);
                 name.get(column.checked_sub(4)?).filter(rests).map(|_| palette.dim_text)
             }
-            Self::Modes if heading == "tolerance" => {
+            Self::Modes if heading.ends_with(": tolerance") => {
                 let cell = &table.rows[row][column];
                 let is = |verdict: ModeVerdict| cell.starts_with(verdict.words());
                 let color = if is(ModeVerdict::Within) { palette.good } else { palette.dim_text };
                 Some(if is(ModeVerdict::Outside) { palette.warning } else { color })
             }
             Self::Summary if heading.starts_with('J') => {
-                let of = requirements.summary_of_row(row)?;
+                let of = requirements.summary_of(&table.rows[row])?;
                 let cost = if heading == "J on-axis" { of.mean_j_on_axis } else { of.mean_j_all };
                 cost.map(|cost| if cost > ACCEPTABLE { palette.warning } else { palette.good })
             }

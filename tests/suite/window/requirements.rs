@@ -2,11 +2,14 @@
 
 use gdcm::view::arrangement::View;
 use gdcm::view::views::RequirementsPage;
-use gdcm_core::study::RequirementRole;
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{RecordHistory, RequirementRole};
 
+use super::assembling::type_into;
 use super::lists::texts_in;
 use super::views::{give, show};
 use super::*;
+use gdcm::view::RequirementTable;
 use gdcm::view::command::Command as Action;
 
 fn texts(window: &Window) -> String {
@@ -78,11 +81,11 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("levels.json");
     std::fs::write(&path, r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
-    give(&mut window, Action::ReadLevels(path.clone()));
+    give(&mut window, Action::ReadRequirementTable(RequirementTable::Levels, path.clone()));
     assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
-    give(&mut window, Action::ReadLevels(path));
+    give(&mut window, Action::ReadRequirementTable(RequirementTable::Levels, path));
     assert_eq!(state(&window).study.requirements.levels.all().len(), 1, "what cannot be read changes nothing");
     click(&mut window, "Remove levels");
     assert!(state(&window).study.requirements.levels.all().is_empty());
@@ -93,6 +96,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     let mut window = window();
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    give(&mut window, Action::ShowTest(true));
     let answers = |window: &mut Window| {
         wait_until(window, "the answers", |window| {
             let decided = state(window).study.requirements.test;
@@ -110,4 +114,65 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     assert!(doublet.signal.iter().any(|value| *value < 0.0) && step.signal.iter().all(|value| *value >= 0.0));
     give(&mut window, Action::Undo);
     assert_eq!(answers(&mut window).test, step.test);
+}
+
+#[test]
+fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Requirements);
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    let shown = |window: &mut Window| {
+        wait_until(window, "the record", |window| {
+            let decided = &state(window).study.requirements.tolerances;
+            let found = state(window).results.record_history.as_ref();
+            found.is_some_and(|(job, found)| job.tolerances == *decided && found.is_ok())
+        });
+        state(window).results.record_history.as_ref().unwrap().1.clone().unwrap()
+    };
+    let by_default = shown(&mut window);
+    let rolls = |of: &RecordHistory| {
+        let roll = of.quantities.iter().find(|of| of.tolerance.quantity == "roll rate").unwrap();
+        let check = |role| roll.models.iter().find(|(of, _)| *of == role).unwrap().1.share_inside();
+        (roll.tolerance.absolute, check(RequirementRole::Physics), check(RequirementRole::Identified))
+    };
+    let (absolute, physics, identified) = rolls(&by_default);
+    assert!(absolute == 3.0 && physics < identified, "{physics} {identified}");
+    click(&mut window, "Tolerances");
+    type_into(&mut window, "Absolute tolerance 1", "90");
+    let wide = shown(&mut window);
+    assert_eq!(rolls(&wide), (90.0, 1.0, 1.0), "nothing rolls faster than that");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.json");
+    give(&mut window, Action::WriteTolerances(path.clone()));
+    give(&mut window, Action::Undo);
+    assert_eq!(rolls(&shown(&mut window)), (absolute, physics, identified));
+    give(&mut window, Action::ReadRequirementTable(RequirementTable::Tolerances, path.clone()));
+    assert_eq!(rolls(&shown(&mut window)), rolls(&wide));
+    std::fs::write(&path, "{}").unwrap();
+    give(&mut window, Action::ReadRequirementTable(RequirementTable::Tolerances, path));
+    assert_eq!(rolls(&shown(&mut window)), rolls(&wide), "what cannot be read changes nothing");
+    click(&mut window, "Default tolerances");
+    assert_eq!(rolls(&shown(&mut window)), (absolute, physics, identified));
+}
+
+#[test]
+fn the_summary_has_what_the_records_that_are_open_say() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Requirements);
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    wait_until(&mut window, "the records", |window| !state(window).records.conditions.is_empty());
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Summary));
+    wait_until(&mut window, "the answers", |window| {
+        state(window).time_histories().is_some() && state(window).requirements().is_some()
+    });
+    let found = state(&window).time_histories().unwrap().clone();
+    let rms = |role| found.j_rms(ConditionId(10), role).unwrap();
+    assert!(rms(RequirementRole::Identified) < rms(RequirementRole::Physics));
+    let table = state(&window).requirements().unwrap().summary_table(Some(&found));
+    let of_flight = table.rows.iter().find(|row| row[..3] == ["10", "60", "identified"].map(str::to_owned)).unwrap();
+    assert_eq!(of_flight[7], format!("{:.2}", rms(RequirementRole::Identified)));
+    assert!(texts(&window).contains("J_rms") && texts(&window).contains("Theil P"));
 }

@@ -1,10 +1,12 @@
-//! The modes of the physics representative against those of the identified one, where both are known by their matrices (M17.3).
+//! The modes of the physics representative, as it is and with the couplings of the study, against those of the identified one, where both
+//! are known by their matrices (M17.3).
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::dataset::{BundleKind, ConditionId, Model};
+use crate::correction::Pade;
+use crate::dataset::{BundleKind, ConditionId, Dynamics, Model};
 use crate::requirements::{
     ComparedMode, ModeName, ModeRow, ModeTolerance, ModeToleranceTable, ModeValues, ModeVerdict, ModelModes, NamedBy,
     compare_modes,
@@ -60,7 +62,7 @@ impl ModeNumbers {
     }
 }
 
-/// A mode of the identified representative, and that of the physics representative in its place.
+/// A mode of the identified representative, and those of the physics representative in its place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
     /// The condition.
@@ -79,6 +81,12 @@ pub struct ModeFinding {
     pub identified: ModeNumbers,
     /// That of the physics representative in its place; none where it has none.
     pub physics: Option<ModeNumbers>,
+    /// What is said of it with the couplings of the study; none without couplings, for gains and delays move no pole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected_verdict: Option<ModeVerdict>,
+    /// That mode; none without couplings too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub corrected: Option<ModeNumbers>,
     /// The tolerance, where the table has one for this mode.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<ModeTolerance>,
@@ -98,10 +106,17 @@ pub(super) fn mode_findings(
     };
     let (physics, identified) = (representative(BundleKind::Physics), representative(BundleKind::Identified));
     let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
+    let of_corrected = coupled_modes(asked, physics)?;
     let flown = ModelModes { modes: &of_identified, states: &identified.states };
-    let model = ModelModes { modes: &of_physics, states: &physics.states };
+    let models: Vec<ModelModes<'_>> = std::iter::once(&of_physics)
+        .chain(&of_corrected)
+        .map(|modes| ModelModes { modes, states: &physics.states })
+        .collect();
     // A dataset keeps no standard deviations of poles.
-    let rows = compare_modes(flown, &[model], &[], asked.analysis.study.settings.band, tolerances);
+    let rows = compare_modes(flown, &models, &[], asked.analysis.study.settings.band, tolerances);
+    let numbers = |row: &ModeRow, of: usize| {
+        row.models.get(of).copied().flatten().map(|mode| ModeNumbers::of(&mode, &physics.name))
+    };
     let finding = |(index, row): (usize, ModeRow)| ModeFinding {
         condition: asked.id(),
         airspeed_kt: asked.airspeed_kt(),
@@ -110,10 +125,20 @@ pub(super) fn mode_findings(
         named_by: row.named_by,
         verdict: row.verdicts.first().copied().unwrap_or(ModeVerdict::NotPaired),
         identified: ModeNumbers::of(&row.flown, &identified.name),
-        physics: row.models.first().copied().flatten().map(|mode| ModeNumbers::of(&mode, &physics.name)),
+        physics: numbers(&row, 0),
+        corrected_verdict: row.verdicts.get(1).copied(),
+        corrected: numbers(&row, 1),
         tolerance: row.tolerance,
     };
     Ok(rows.into_iter().enumerate().map(finding).collect())
+}
+
+/// The modes of a physics model with the couplings of the study; none without couplings.
+fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
+    let Some(matrices) = physics.state_space().filter(|_| asked.result.coupled.is_some()) else { return Ok(None) };
+    let named = |error: &dyn std::fmt::Display| format!("\"{}\" with couplings: {error}", physics.name);
+    let coupled = asked.result.coupled_model(matrices, Pade::default()).map_err(|error| named(&error))?;
+    modes_of(&Dynamics::StateSpace(coupled.into_owned())).map(Some).map_err(|error| named(&error))
 }
 
 /// The modes of a model, or why they are not known.

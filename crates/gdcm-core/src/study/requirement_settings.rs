@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dataset::Dataset;
 use super::Analysis;
+use crate::dataset::Dataset;
 use crate::requirements::{CommandType, LevelBoundaries, ModeToleranceTable, TestInput, ToleranceTable};
 
 /// What requirements are asked with; a part that is left out is the default.

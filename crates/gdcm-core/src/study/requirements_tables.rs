@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use crate::dataset::{ConditionId, Dataset};
 use crate::executor::Executor;
-use crate::requirements::{BandwidthRule, ModeVerdict};
+use crate::requirements::{BandwidthRule, ModeVerdict, NamedBy};
 use crate::units::{s_to_ms, telling};
 
 use super::{
-    Analysis, BandwidthFinding, Cancelled, Execution, Job, ModeNumbers, Progress, RequirementRole, RequirementSettings, Requirements,
-    SummaryFinding, Table, Uncertainty, requirements_of,
+    Analysis, BandwidthFinding, Cancelled, Execution, Job, ModeNumbers, Progress, RequirementRole, RequirementSettings,
+    Requirements, SummaryFinding, Table, TimeHistories, Uncertainty, requirements_of,
 };
 
 /// What a qualification asks of an analysis, with its error bars where they are known.
@@ -46,8 +46,20 @@ impl Job for RequirementsJob {
     }
 }
 
+/// Heading of the modulus of a pole.
+const MODULUS: &str = "|\u{3bb}| [rad/s]";
+
 fn cell(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}").replace('-', "\u{2212}"))
+}
+
+/// Modulus, damping ratio and period of a mode; dashes where there is none.
+fn mode_cells(of: Option<&ModeNumbers>) -> [String; 3] {
+    [
+        cell(of.map(|of| of.pole_real_rad_s.hypot(of.pole_imaginary_rad_s)), 2),
+        cell(of.and_then(|of| of.values.damping_ratio), 2),
+        cell(of.and_then(|of| of.values.period_s), 1),
+    ]
 }
 
 impl Requirements {
@@ -85,43 +97,38 @@ impl Requirements {
         table
     }
 
-    /// The modes of a condition: flown, and those of the physics model in their places.
+    /// The modes of a condition: flown, of the physics representative, and with the couplings of the study where there are some.
     pub fn mode_table(&self, condition: ConditionId) -> Table {
-        let columns = [
-            "mode",
-            "named by",
-            "flown |λ| [rad/s]",
-            "flown ζ",
-            "physics |λ| [rad/s]",
-            "physics ζ",
-            "period [s]",
-            "physics period [s]",
-            "tolerance",
-        ];
+        let modes = || self.modes.iter().filter(|of| of.condition == condition);
+        let is_coupled = modes().any(|of| of.corrected_verdict.is_some());
+        let heads = |model: &str| [MODULUS, "\u{3b6}", "period [s]"].map(|what| format!("{model} {what}"));
+        let verdict_of = |model: &str| format!("{model}: tolerance");
+        let mut columns = vec!["mode".to_owned(), "named by".to_owned()];
+        columns.extend(heads("flown").into_iter().chain(heads("physics")).chain([verdict_of("physics")]));
+        if is_coupled {
+            columns.extend(heads("corrected").into_iter().chain([verdict_of("corrected")]));
+        }
         let mut table = Table::new(format!("Modes of condition {condition}"), columns);
-        let frequency = |of: &ModeNumbers| of.pole_real_rad_s.hypot(of.pole_imaginary_rad_s);
-        for of in self.modes.iter().filter(|of| of.condition == condition) {
-            let physics = of.physics.as_ref();
+        for of in modes() {
             let name = of.name.map_or_else(|| format!("mode {}", of.number), |name| name.to_string());
+            let named_by = if of.named_by == NamedBy::States { "states" } else { "frequency" };
             let entry = of.tolerance.as_ref().map_or_else(String::new, |of| format!(" ({})", of.entry));
-            table.row([
-                name,
-                if of.named_by == crate::requirements::NamedBy::States { "states" } else { "frequency" }.to_owned(),
-                cell(Some(frequency(&of.identified)), 2),
-                cell(of.identified.values.damping_ratio, 2),
-                cell(physics.map(frequency), 2),
-                cell(physics.and_then(|of| of.values.damping_ratio), 2),
-                cell(of.identified.values.period_s, 1),
-                cell(physics.and_then(|of| of.values.period_s), 1),
-                format!("{}{entry}", of.verdict.words()),
-            ]);
+            let verdict = |of: ModeVerdict| format!("{}{entry}", of.words());
+            let mut cells = vec![name, named_by.to_owned()];
+            cells.extend(mode_cells(Some(&of.identified)));
+            cells.extend(mode_cells(of.physics.as_ref()).into_iter().chain([verdict(of.verdict)]));
+            if let Some(corrected) = of.corrected_verdict {
+                cells.extend(mode_cells(of.corrected.as_ref()).into_iter().chain([verdict(corrected)]));
+            }
+            table.row(cells);
         }
         table
     }
 
-    /// Mean J, and the share of the band inside the envelopes of unnoticeable added dynamics, of every condition and model.
-    pub fn summary_table(&self) -> Table {
-        let columns = [
+    /// Mean J, and the share of the band inside the envelopes of unnoticeable added dynamics, of every condition and model; with the
+    /// answers to flight records `J_rms` and Theil's coefficients too.
+    pub fn summary_table(&self, histories: Option<&TimeHistories>) -> Table {
+        let heads = [
             "condition",
             "airspeed [kt]",
             "model",
@@ -130,20 +137,36 @@ impl Requirements {
             "in MUAD on-axis [%]",
             "in MUAD of all [%]",
         ];
+        let of_records = histories.filter(|of| !of.records.is_empty());
+        let columns = heads.map(str::to_owned).into_iter().chain(of_records.into_iter().flat_map(|of| of.cost_heads()));
         let mut table = Table::new("Summary: models against flight", columns);
+        let over_time = |id, role| of_records.into_iter().flat_map(move |found| found.costs(id, role));
         for of in &self.summary {
             let [on_axis, all] = [of.mean_j_on_axis, of.mean_j_all].map(|value| cell(value, 1));
             let shares = [of.muad_share_on_axis, of.muad_share_all];
             let [on_axis_share, all_share] = shares.map(|value| cell(value.map(|share| 100.0 * share), 0));
             let head = [of.condition.to_string(), telling(of.airspeed_kt, 0), of.role.name().to_owned()];
-            table.row(head.into_iter().chain([on_axis, all, on_axis_share, all_share]));
+            let numbers = [on_axis, all, on_axis_share, all_share];
+            table.row(head.into_iter().chain(numbers).chain(over_time(of.condition, of.role)));
         }
+        // The others are compared with it: over time only is there something to say of it.
+        let role = RequirementRole::Identified;
+        for of in of_records.into_iter().flat_map(|found| found.records.iter().filter(|of| of.role == role)) {
+            let head = [of.condition.to_string(), telling(of.airspeed_kt, 0), role.name().to_owned()];
+            let row = head.into_iter().chain([(); 4].map(|()| "-".to_owned())).chain(over_time(of.condition, role));
+            let row: Vec<String> = row.collect();
+            if !table.rows.contains(&row) {
+                table.row(row);
+            }
+        }
+        table.rows.sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));
         table
     }
 
-    /// The summary of a row of [`Requirements::summary_table`].
-    pub fn summary_of_row(&self, row: usize) -> Option<&SummaryFinding> {
-        self.summary.get(row)
+    /// The summary of a row of [`Requirements::summary_table`]; none of the identified model, which the others are compared with.
+    pub fn summary_of(&self, row: &[String]) -> Option<&SummaryFinding> {
+        let [condition, _, role, ..] = row else { return None };
+        self.summary.iter().find(|of| of.condition.to_string() == *condition && of.role.name() == role)
     }
 
     /// What a condition's model has of a response.

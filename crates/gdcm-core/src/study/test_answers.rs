@@ -98,8 +98,8 @@ mod tests {
     use crate::correction::Pade;
     use crate::dataset::BundleKind;
     use crate::requirements::TestInputShape;
-    use crate::study::couplings_example_tests::EXAMPLE;
     use crate::study::Unobserved;
+    use crate::study::couplings_example_tests::EXAMPLE;
 
     fn answers(test: TestInput) -> TestAnswers {
         let analysis = EXAMPLE.analysis.clone();

@@ -83,7 +83,7 @@ fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
     let squares = |n: usize| found.of_role(CONDITION, role).nth(n).unwrap().j_rms.unwrap().powi(2);
     let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
     assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
-    assert_eq!(found.rms_table().rows[0][2], format!("{rms:.2}"));
+    assert_eq!(found.cost_table().rows[0][3], format!("{rms:.2}"));
     let of_records = found.record_table(CONDITION);
     let rows = found.records[0].tolerances.len();
     assert_eq!(of_records.rows.len(), 2 * 4 * rows);

@@ -1,9 +1,14 @@
 //! Time histories within tolerances, as tables (M17.2).
 
+use std::collections::BTreeSet;
+
 use crate::dataset::ConditionId;
 use crate::units::telling;
 
 use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFinding};
+
+/// Of which Theil's coefficient is without unit.
+const COST_TITLE: &str = "J_rms [deg, deg/s, ft/s, ft/s\u{b2}] and Theil's coefficients";
 
 /// Samples inside, and all of them.
 type Counted = (f64, f64);
@@ -63,14 +68,42 @@ impl TimeHistories {
         table
     }
 
-    /// `J_rms` over all records of each condition, model by model.
-    pub fn rms_table(&self) -> Table {
-        let columns = ["condition", "records"].into_iter().chain(RequirementRole::ALL.map(RequirementRole::name));
-        let mut table = Table::new("J_rms [deg, deg/s, ft/s, ft/s\u{b2}]", columns);
+    /// Theil's coefficient of an output over all records of a condition: their mean, each by its samples.
+    pub fn theil(&self, condition: ConditionId, role: RequirementRole, output: &str) -> Option<f64> {
+        let found = self.of_role(condition, role).filter_map(|finding| {
+            let samples = finding.samples as f64;
+            Some((finding.theil.get(output)? * samples, samples))
+        });
+        let (sum, samples): Counted = found.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
+        (samples > 0.0).then(|| sum / samples)
+    }
+
+    /// The outputs that have a coefficient of Theil.
+    fn moved_outputs(&self) -> BTreeSet<&str> {
+        self.records.iter().flat_map(|finding| finding.theil.keys()).map(String::as_str).collect()
+    }
+
+    /// Headings of [`TimeHistories::costs`].
+    pub(super) fn cost_heads(&self) -> Vec<String> {
+        let theil = self.moved_outputs().into_iter().map(|output| format!("Theil {output}"));
+        std::iter::once("J_rms".to_owned()).chain(theil).collect()
+    }
+
+    /// `J_rms` of a condition's model, and Theil's coefficient of every output, as they are shown.
+    pub(super) fn costs(&self, condition: ConditionId, role: RequirementRole) -> Vec<String> {
+        let theil = self.moved_outputs().into_iter().map(|output| self.theil(condition, role, output));
+        std::iter::once(self.j_rms(condition, role)).chain(theil).map(|value| number(value, 2)).collect()
+    }
+
+    /// `J_rms` and Theil's coefficients over all records of each condition and model.
+    pub fn cost_table(&self) -> Table {
+        let columns = ["condition", "records", "model"].map(str::to_owned).into_iter().chain(self.cost_heads());
+        let mut table = Table::new(COST_TITLE, columns);
         for (condition, records) in self.conditions() {
-            let heads = [condition.to_string(), records.to_string()];
-            let costs = RequirementRole::ALL.map(|role| number(self.j_rms(condition, role), 2));
-            table.row(heads.into_iter().chain(costs));
+            for role in RequirementRole::ALL {
+                let heads = [condition.to_string(), records.to_string(), role.name().to_owned()];
+                table.row(heads.into_iter().chain(self.costs(condition, role)));
+            }
         }
         table
     }

@@ -37,7 +37,7 @@ pub(super) fn add_requirements(
         "Means of J (M4) and of the share of the band, in ln \u{3c9}, inside the envelopes of unnoticeable added dynamics \
          (MIL-STD-1797A, appendix A, 4.2.1.2), against the identified representative.",
     );
-    page.table(&requirements.summary_table());
+    page.table(&requirements.summary_table(None));
     if let Some(histories) = histories {
         add_histories(page, histories);
     }
@@ -75,7 +75,8 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
     page.subsection("Modes");
     page.paragraph(
         "Modes of the identified representative, and of the physics representative in their places, against 14 CFR part 60, appendix C, \
-         table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings, which do, are not in these.",
+         table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings do, and where there are some the corrected model's \
+         stand beside them.",
     );
     let mut conditions: Vec<ConditionId> = requirements.modes.iter().map(|of| of.condition).collect();
     conditions.dedup();
@@ -97,7 +98,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
         page.table(&histories.share_table());
-        page.table(&histories.rms_table());
+        page.table(&histories.cost_table());
     }
     page.list(by_words(histories.missing.iter().map(|of| (of.condition, of.why.clone()))));
 }

@@ -4,7 +4,9 @@ use std::sync::{Arc, LazyLock};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::study::{Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Study, Unobserved, curves_band};
+use gdcm_core::study::{
+    Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Requirements, Study, Unobserved, curves_band,
+};
 use gdcm_files::figure::{
     Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
     Panel, Plot, Range, Stroke, all_channels,
@@ -19,6 +21,7 @@ mod views;
 struct Example {
     analysis: Analysis,
     curves: Arc<ConditionCurves>,
+    requirements: Arc<Requirements>,
 }
 
 static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
@@ -30,7 +33,8 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
     let grid = (curves_band(&study.settings), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
-    Example { analysis, curves }
+    let requirements = Arc::new(engine.requirements(&analysis, &Unobserved).unwrap());
+    Example { analysis, curves, requirements }
 });
 
 const CONDITION: ConditionId = ConditionId(10);
@@ -59,7 +63,8 @@ impl Example {
     }
 
     fn figure(&self, kind: FigureKind, pairs: Vec<Pair>) -> Figure {
-        self.request(&FigureRequest::new(kind, pairs, self.channels()))
+        let requirements = Some(Arc::clone(&self.requirements));
+        self.request(&FigureRequest { requirements, ..FigureRequest::new(kind, pairs, self.channels()) })
     }
 
     fn request(&self, request: &FigureRequest) -> Figure {

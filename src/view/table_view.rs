@@ -99,7 +99,15 @@ pub fn table_grid_ui(
     commands: &mut Vec<Command>,
 ) -> Option<TableClick> {
     let mut clicked = None;
-    Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).striped(true).show(ui, |ui| {
+    let order = sorting.order(table);
+    // The heading is row 0.
+    let is_selected: Vec<bool> = std::iter::once(false).chain(order.iter().map(|row| (look.selected)(*row))).collect();
+    let selected = palette.selected;
+    let row_color = move |row: usize, style: &egui::Style| match is_selected.get(row) {
+        Some(true) => Some(selected),
+        _ => (row % 2 == 1).then_some(style.visuals.faint_bg_color),
+    };
+    Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).with_row_color(row_color).show(ui, |ui| {
         for (column, heading) in table.columns.iter().enumerate() {
             let text = palette.small(format!("{heading}{}", sorting.mark(column)));
             let button = ui.add(Button::new(text).frame(false));
@@ -110,12 +118,10 @@ pub fn table_grid_ui(
             }
         }
         ui.end_row();
-        for row in sorting.order(table) {
-            let selected = (look.selected)(row);
+        for row in order {
             for (column, cell) in table.rows[row].iter().enumerate() {
                 let color = (look.color)(row, column).unwrap_or(palette.text);
                 let text = RichText::new(cell).size(SMALL_SIZE).color(color);
-                let text = if selected { text.background_color(palette.selected) } else { text };
                 let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
                 let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
                 let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;

@@ -1,17 +1,19 @@
 //! What a qualification asks: phase delay over bandwidth of every attitude response (M17.1).
 
 use gdcm_core::dataset::{Dataset, Pair};
-use gdcm_core::requirements::LevelBoundaries;
+use gdcm_core::requirements::{LevelBoundaries, LevelBoundary};
 use gdcm_core::study::{BandwidthFinding, RequirementRole, Requirements};
 use gdcm_core::units::s_to_ms;
 
 use super::axis::Axis;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
-use super::mark::{Curve, Dot, DotShape, Dots, Intervals, Mark, MarkId};
+use super::mark::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId};
 
 const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const BAR: Stroke = Stroke::solid(Color::DIM, 0.7);
+/// Above every phase delay that is drawn \[ms\].
+const BEYOND_MS: f64 = 1e4;
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 
 /// How the model of a role is drawn.
@@ -48,7 +50,8 @@ pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, level
         let name = dataset.pair_name(pair);
         let axis = &dataset.outputs()[pair.output].name;
         let (x, y) = (Axis::linear("bandwidth [rad/s]"), Axis::linear("phase delay [ms]").including(0.0));
-        let panel = Panel::new(x, y).with_all(boundaries(levels, axis)).with_all(marks(requirements, pair));
+        let panel = Panel::new(x, y).with_all(beyond(levels, axis)).with_all(boundaries(levels, axis));
+        let panel = panel.with_all(marks(requirements, pair));
         Plot::new(format!("{name}: attitude")).panel(panel)
     });
     let level = 100.0 * requirements.interval_level;
@@ -57,6 +60,21 @@ pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, level
          These numbers are no qualification."
     );
     Figure::new("Bandwidth and phase delay").caption(caption).columns(2).aspect(0.66).plots(plots)
+}
+
+/// What lies beyond the boundaries, at less bandwidth and more phase delay, the widest first and the narrower darker; of one that turns
+/// back along x nothing is shaded.
+fn beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
+    let mut rising: Vec<&LevelBoundary> =
+        levels.of_axis(axis).filter(|of| of.points.is_sorted_by(|a, b| a[0] <= b[0])).collect();
+    rising.sort_by(|a, b| b.points[0][0].total_cmp(&a.points[0][0]));
+    let area = |(index, of): (usize, &LevelBoundary)| {
+        let before = [[0.0, 0.0], [of.points[0][0], 0.0]];
+        let points = before.iter().chain(&of.points).map(|[x, y]| [*x, s_to_ms(*y), BEYOND_MS]).collect();
+        let color = Color::of(Hue::Warning).tint((12 * (1 + index)).min(48) as u8);
+        Envelope { name: format!("beyond {}", of.name), color, edge: None, points }
+    };
+    rising.into_iter().enumerate().map(area).collect()
 }
 
 fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<Item = Mark> + 'a {

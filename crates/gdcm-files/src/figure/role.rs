@@ -1,6 +1,7 @@
 //! What a curve stands for, and how it therefore looks on paper: the same in every figure.
 
 use gdcm_core::dataset::BundleKind;
+use gdcm_core::study::RequirementRole;
 use serde::{Deserialize, Serialize};
 
 use super::drawing::{Color, Dash, Hue, Stroke};
@@ -212,6 +213,8 @@ fn entry(mark: &Mark) -> Option<Entry> {
 }
 
 fn place(text: &str) -> usize {
+    // Where only one physics model is drawn it stands in the place of the nominal one.
+    let text = if text == RequirementRole::Physics.name() { Role::Nominal.key(false) } else { text };
     // A rejected model has the entry of its own role: all but the nominal one have that of the rejected.
     let of_role = |role: &Role| role.key(false) == text || (*role == Role::Nominal && role.key(true) == text);
     Role::ALL.iter().position(of_role).unwrap_or(Role::ALL.len())

@@ -231,5 +231,23 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
     group.finish();
 }
 
-criterion_group!(benches, stages, live_loop, ratios, replaced_model, bars);
+/// What a qualification asks of all conditions without records, with its intervals; 11 conditions, 19 + 11 or 12 models each. Figure to
+/// reach: 50 ms on two cores, beside the live answer.
+fn requirements(criterion: &mut Criterion) {
+    let mut study = Study::new(embedded_example().expect("the embedded example is a dataset").dataset);
+    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).expect("a choice");
+    let mut engine = Engine::with_executor(Box::new(Pool));
+    let mut analysis = engine.analyze(&study, &Unobserved).expect("nobody stops it");
+    let mut group = criterion.benchmark_group("requirements of the embedded example");
+    group.sample_size(10);
+    group.bench_function("without intervals", |bencher| bencher.iter(|| engine.requirements(&analysis, &Unobserved)));
+    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).expect("nobody stops it")));
+    group.bench_function("with intervals", |bencher| bencher.iter(|| engine.requirements(&analysis, &Unobserved)));
+    group.bench_function("the analysis itself, everything anew", |bencher| {
+        bencher.iter(|| Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, stages, live_loop, ratios, replaced_model, bars, requirements);
 criterion_main!(benches);

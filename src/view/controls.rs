@@ -259,6 +259,15 @@ pub fn table_menu_ui(ui: &mut Ui, heading: &egui::Response, kind: TableKind, com
     });
 }
 
+/// A tab of a page of a view; gives whether it was clicked. Its accessible name is "Page NAME".
+pub fn page_tab_ui(ui: &mut Ui, is_shown: bool, short_name: &str, (name, purpose): (&str, &str)) -> (Response, bool) {
+    let tab = ui.selectable_label(is_shown, short_name);
+    let tab =
+        named_switch(tab, Role::Button, is_shown, format!("Page {name}")).on_hover_text(format!("{name}: {purpose}"));
+    let is_clicked = tab.clicked();
+    (tab, is_clicked)
+}
+
 /// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
 pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
     let id = Id::unique(("entry", name));

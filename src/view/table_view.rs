@@ -122,7 +122,7 @@ pub fn table_grid_ui(
             for (column, cell) in table.rows[row].iter().enumerate() {
                 let color = (look.color)(row, column).unwrap_or(palette.text);
                 let text = RichText::new(cell).size(SMALL_SIZE).color(color);
-                let layout = if number_in(cell).is_some() { Align::Max } else { Align::Min };
+                let layout = if number_in(cell).is_some() || cell == "-" { Align::Max } else { Align::Min };
                 let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
                 let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
                 response.context_menu(|ui| copy_ui(ui, table, commands));

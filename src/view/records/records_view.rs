@@ -1,9 +1,10 @@
 //! The Records view: the records at the left, one page about them at the right.
 
 use egui::scroll_area::ScrollBarVisibility;
-use egui::{Button, Frame, Label, Margin, Panel, Role, ScrollArea, Ui};
+use egui::{Button, Frame, Label, Margin, Panel, ScrollArea, Ui};
 
-use crate::view::{Command, Palette, State, button_ui, is_entered, named_switch, restore_panel_size, text_field_ui};
+use crate::view::controls::page_tab_ui;
+use crate::view::{Command, Palette, State, button_ui, is_entered, restore_panel_size, text_field_ui};
 
 use gdcm_core::records::LayoutProblem;
 
@@ -84,14 +85,11 @@ fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
             ui.spacing_mut().item_spacing.x = 2.0;
             for page in RecordsPage::ALL {
                 let (name, short_name, purpose) = page.words();
-                let tab = ui.selectable_label(page == shown, short_name);
-                let tab = named_switch(tab, Role::Button, page == shown, format!("Page {name}"));
+                let (tab, is_clicked) = page_tab_ui(ui, page == shown, short_name, (name, purpose));
                 if tab.gained_focus() {
                     tab.scroll_to_me(None);
                 }
-                if tab.on_hover_text(format!("{name}: {purpose}")).clicked() {
-                    commands.push(RecordsCommand::Show(page).into());
-                }
+                commands.extend(is_clicked.then_some(RecordsCommand::Show(page).into()));
             }
         });
     });

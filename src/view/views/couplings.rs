@@ -25,18 +25,18 @@ use crate::view::table_view::{Sorting, TableLook, table_grid_ui};
 /// Part of the width that words and tables take.
 const WORDS_PART: f32 = 0.56;
 
-/// Which couplings are fitted. Laid out from right to left.
+/// Which couplings are fitted.
 pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
     let choices = [
+        (CouplingCorrection::None, "none", "Gains, delays and leads of the channels alone (the paper)"),
+        (CouplingCorrection::Mixing, "mixing", "Each input takes constant shares of the others (M16)"),
         (
             CouplingCorrection::MixingAndFeedback,
             "mixing and feedback",
             "Inputs take shares of inputs and outputs (M16)",
         ),
-        (CouplingCorrection::Mixing, "mixing", "Each input takes constant shares of the others (M16)"),
-        (CouplingCorrection::None, "none", "Gains, delays and leads of the channels alone (the paper)"),
     ];
     choice_ui(ui, "Couplings of the physics models", &mut chosen, &choices);
     if chosen != shown {

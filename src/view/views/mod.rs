@@ -240,7 +240,7 @@ impl View {
                 takes_dock: true,
                 title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
                 tools: |ui, state, _, commands| requirements_header_ui(ui, state, commands),
-                tools_width: 130.0,
+                tools_width: 270.0,
                 is_of_all_conditions: true,
                 needs: requirements_needs,
                 figure: Some(FigureKind::Requirements),

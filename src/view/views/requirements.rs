@@ -15,12 +15,11 @@ use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs};
 use super::{Need, View, histories_ui, over_time_need};
 use crate::view::CurveCommand;
 use crate::view::command::{Command, RequirementTable};
-use crate::view::controls::{button_ui, check_ui, restore_panel_size};
+use crate::view::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::records::ConditionRecords;
-use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
 
@@ -48,16 +47,20 @@ pub enum RequirementsPage {
 
 /// Which question is answered. Laid out from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let mut chosen = state.display.requirements_page;
-    let choices = [
-        (RequirementsPage::Summary, "summary", "Mean J, and the share of the band inside the MUAD envelopes"),
+    let shown = state.display.requirements_page;
+    let pages = [
+        (
+            RequirementsPage::Summary,
+            "summary",
+            "Mean J, shares of the band inside the MUAD envelopes, errors over time",
+        ),
         (RequirementsPage::Modes, "modes", "Modes of the condition, against their tolerances"),
-        (RequirementsPage::Histories, "in time", "Responses over time, to a step or a doublet of the input in focus"),
+        (RequirementsPage::Histories, "in time", "Flight records within tolerances, or answers to a step or a doublet"),
         (RequirementsPage::Bandwidth, "bandwidth", "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)"),
     ];
-    choice_ui(ui, "Page of requirements", &mut chosen, &choices);
-    if chosen != state.display.requirements_page {
-        commands.push(Command::ShowRequirements(chosen));
+    for (page, name, purpose) in pages {
+        let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
+        commands.extend(is_clicked.then_some(Command::ShowRequirements(page)));
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Complex;
 use crate::assembly::PhysicalUnit;
 use crate::dataset::{Band, Channel, MeasuredResponse, Pair};
 use crate::message_text::quoted;
-use crate::response::{GainDelay, PreparedModel, between, interpolate, log_spaced, unwrap, wrap};
+use crate::response::{between, interpolate, log_spaced, unwrap, wrap};
 use crate::units::{number, ratio_to_db};
 
 /// Frequencies on which sign changes are looked for.
@@ -73,18 +73,6 @@ impl AttitudeOutput {
 
 /// A response at any frequencies \[rad/s\]; not a number where it is not known.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
-
-/// The exact response of a model under `correction` (M2, M10).
-pub fn model_response(
-    model: &PreparedModel,
-    pair: Pair,
-    correction: GainDelay,
-) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-    move |omega| {
-        let values = model.at(omega);
-        values.curve(pair).iter().zip(omega).map(|(value, omega)| value * correction.at(*omega)).collect()
-    }
-}
 
 /// A measured response, interpolated between its frequencies and not a number outside them (M2).
 pub fn measured_response(response: &MeasuredResponse, pair: Pair) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {

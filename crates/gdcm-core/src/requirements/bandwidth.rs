@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 1  Theta = H/(j omega) of a rate, H of an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
-//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg, by bisection;
+//! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg;
 //!    where it is below that at the band's lowest frequency, the next one below
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
 //! 4  omega_BW = min(omega_phase, omega_gain) of a rate response; omega_phase of attitude command
@@ -17,15 +17,12 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    AttitudeOutput, AttitudeResponse, AttitudeResponseError, PairBand, ResponseDeviation, measured_response,
-    model_response, search_frequencies,
-};
-use crate::dataset::{Band, Channel, MeasuredResponse, ModelBands, Pair};
-use crate::response::{GainDelay, PreparedModel, log_spaced};
+use super::{AttitudeOutput, AttitudeResponse, AttitudeResponseError, ResponseDeviation, measured_response};
+use crate::dataset::{Band, Channel, MeasuredResponse, Pair};
+use crate::response::log_spaced;
 use crate::units::number;
 
-/// Relative width of the bracket of a crossing at which bisection ends.
+/// Relative width of the bracket of a crossing at which the search ends.
 const ROOT_TOLERANCE: f64 = 1e-12;
 /// Margin of `omega_gain` \[dB\].
 const GAIN_MARGIN_DB: f64 = 6.0;
@@ -206,27 +203,10 @@ impl Bandwidth {
         }
     }
 
-    /// Of one response of a model under `correction` ([`GainDelay::NONE`] as it is), exact; `bands` are those of the model.
-    ///
-    /// # Errors
-    /// [`AttitudeResponseError`] where the output is neither a rate nor an attitude, or the response is nowhere defined.
-    pub fn of_model(
-        model: &PreparedModel,
-        (pair, output): (Pair, &Channel),
-        correction: GainDelay,
-        settings: &BandwidthSettings,
-        bands: Option<&ModelBands>,
-    ) -> Result<Self, AttitudeResponseError> {
-        let (response, frequencies) = (model_response(model, pair, correction), search_frequencies(settings.band));
-        let attitude = AttitudeResponse::new(&response, AttitudeOutput::of(output)?, &frequencies, settings.band)?;
-        let deviation = bands.map(|bands| PairBand { bands, pair });
-        Ok(Self::of(&attitude, settings, deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation)))
-    }
-
     /// Of one measured response, interpolated inside its frequencies; the band of `settings` is where it is trusted.
     ///
     /// # Errors
-    /// As [`Bandwidth::of_model`].
+    /// [`AttitudeResponseError`] where the output is neither a rate nor an attitude, or the response is nowhere defined.
     pub fn of_measured(
         measured: &MeasuredResponse,
         (pair, output): (Pair, &Channel),
@@ -276,7 +256,8 @@ impl Reading<'_> {
                 NoMetric::NoCrossing { level_deg, up_to: omega[last] }
             });
         };
-        let root = bisect([omega[k], omega[k + 1]], |omega| self.attitude.phase_at(omega).map(|phase| level - phase));
+        let root =
+            root_between([omega[k], omega[k + 1]], |omega| self.attitude.phase_at(omega).map(|phase| level - phase));
         self.metric(root, [root, root], self.deviation.and_then(|of| of.of_phase_crossing(self.attitude, root)))
     }
 
@@ -291,7 +272,7 @@ impl Reading<'_> {
         let k = (0..below).rev().find(|&k| is_above(k)).ok_or(none)?;
         let upper = if k + 1 < below { grid[k + 1] } else { top };
         let excess = |omega: f64| self.attitude.magnitude_db_at(omega).map(|magnitude| level - magnitude);
-        let root = bisect([grid[k], upper], excess);
+        let root = root_between([grid[k], upper], excess);
         self.metric(root, [root, top], self.deviation.and_then(|of| of.of_gain_crossing(self.attitude, root, top)))
     }
 
@@ -337,18 +318,36 @@ impl Reading<'_> {
 }
 
 /// The root of `value` between two frequencies, positive at the upper and not at the lower.
-fn bisect([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
-    while high - low > ROOT_TOLERANCE * high {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
+///
+/// ```text
+/// 1  [a, b] brackets the root, a the newest point; c is the point given up last
+/// 2  inverse quadratic interpolation through a, b, c where these are monotonic, else the middle
+/// 3  no step closer to an end than the tolerance, so that both ends close in
+/// ```
+///
+/// T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using
+/// derivatives", *Advances in Engineering Software* 28, 1997.
+fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
+    // Where there is no value, the root is taken to lie above.
+    let sided = |omega: f64| value(omega).filter(|value| !value.is_nan()).unwrap_or(-1.0);
+    let (mut a, mut b) = ((high, sided(high)), (low, sided(low)));
+    let mut part = 0.5;
+    loop {
+        let at = a.0 + part * (b.0 - a.0);
+        let new = (at, sided(at));
+        let c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { std::mem::replace(&mut b, a) };
+        a = new;
+        let best = if a.1.abs() < b.1.abs() { a } else { b };
+        let least = ROOT_TOLERANCE * best.0 / (b.0 - a.0).abs();
+        if least > 0.5 || best.1 == 0.0 || !least.is_finite() {
+            return best.0;
         }
-        match value(middle) {
-            Some(value) if value > 0.0 => high = middle,
-            _ => low = middle,
-        }
+        let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));
+        let is_monotonic = phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi;
+        let quadratic =
+            a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1) + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
+        part = if is_monotonic { quadratic.clamp(least, 1.0 - least) } else { 0.5 };
     }
-    0.5 * (low + high)
 }
 
 /// The largest distance \[rad\] of a phase from the line between its ends.

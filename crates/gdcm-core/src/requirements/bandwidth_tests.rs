@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use super::known_answers_tests::{answers, attitudes, number};
 use super::*;
 use crate::dataset::{Band, Channel, Dynamics, MeasuredResponse, ModelBands, Pair, PairTable, StateSpace, Timing};
-use crate::response::{GainDelay, PreparedModel, log_spaced};
+use crate::response::{GainDelay, log_spaced};
 
 const ONLY: Pair = Pair { output: 0, input: 0 };
 
@@ -222,12 +222,16 @@ fn a_model_and_its_correction_are_taken_exactly() {
     // 5 / (s + 3) is the rate of the third known answer without its servo; 60 ms of delay are the correction's and the model's.
     let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
     let timing = Timing { input_delays_s: Some(vec![0.02]), ..Timing::default() };
-    let model = PreparedModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()));
-    let of = |output: &Channel| {
-        Bandwidth::of_model(&model, (ONLY, output), GainDelay::new(1.7, 0.04), &settings(CommandType::Rate), None)
+    let model = SampledModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
+    let correction = GainDelay::new(1.7, 0.04);
+    let of = |response: &ResponseAt<'_>| {
+        let attitude = AttitudeResponse::new(response, AttitudeOutput::Rate, &search_frequencies(band()), band());
+        Bandwidth::of(&attitude.unwrap(), &settings(CommandType::Rate), None)
     };
-    let found = of(&roll_rate()).unwrap();
-    assert!(of(&Channel::new("NZ", "g")).unwrap_err().to_string().contains("has no bandwidth"));
+    let found = of(&model.exact(ONLY, correction));
+    let near = of(&model.interpolated(ONLY, correction));
+    let error = AttitudeOutput::of(&Channel::new("NZ", "g")).unwrap_err();
+    assert!(error.to_string().contains("has no bandwidth"));
     let expected = of_attitude(|s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)), &settings(CommandType::Rate));
     for (found, expected) in [
         (found.omega_bw, expected.omega_bw),
@@ -236,6 +240,15 @@ fn a_model_and_its_correction_are_taken_exactly() {
         (found.phase_delay_s, expected.phase_delay_s),
     ] {
         assert!((value(found) / value(expected) - 1.0).abs() < 1e-10);
+    }
+    for (near, exact) in [
+        (near.omega_bw, found.omega_bw),
+        (near.omega_gain, found.omega_gain),
+        (near.phase_delay_s, found.phase_delay_s),
+    ] {
+        // Of four points 1.5 % apart: the fourth power of that, times what the delay turns the phase by.
+        let apart = (value(near) / value(exact) - 1.0).abs();
+        assert!(apart > 0.0 && apart < 1e-7, "{apart}");
     }
 }
 

@@ -24,6 +24,7 @@ mod mode_name;
 #[cfg(test)]
 mod mode_tests;
 mod mode_tolerance;
+mod sampled_model;
 mod summary;
 mod test_input;
 mod tolerance;
@@ -38,6 +39,7 @@ pub use level_boundary::*;
 pub use mode_comparison::*;
 pub use mode_name::*;
 pub use mode_tolerance::*;
+pub use sampled_model::*;
 pub use summary::*;
 pub use test_input::*;
 pub use tolerance::*;

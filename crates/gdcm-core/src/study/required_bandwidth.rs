@@ -12,12 +12,13 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
-use crate::dataset::{self, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
+use crate::dataset::{self, Band, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
-    Metric, NoMetric, PairBand, PhaseLine, ResponseDeviation, model_response, search_frequencies, substitution_bar,
+    Metric, NoMetric, PairBand, PhaseLine, ResponseAt, ResponseDeviation, SampledModel, search_frequencies,
+    substitution_bar,
 };
-use crate::response::{GainDelay, PreparedModel};
+use crate::response::GainDelay;
 use crate::uncertainty::{Figures, Scalar, student_quantile};
 
 use super::{AskedCondition, RequirementRole};
@@ -113,13 +114,22 @@ pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
 /// A model made ready for its response.
 struct ReadModel<'a> {
     model: Cow<'a, Model>,
-    prepared: PreparedModel,
+    sampled: SampledModel,
+}
+
+/// How a model is read between the frequencies that are searched.
+#[derive(Clone, Copy, PartialEq)]
+enum Between {
+    /// Exactly.
+    Exact,
+    /// By interpolation: of models that only say how much a number scatters.
+    Interpolated,
 }
 
 impl<'a> ReadModel<'a> {
-    fn of(model: Cow<'a, Model>) -> Self {
-        let prepared = PreparedModel::of(&model.dynamics);
-        Self { model, prepared }
+    fn of(model: Cow<'a, Model>, band: Band) -> Self {
+        let sampled = SampledModel::of(&model.dynamics, band);
+        Self { model, sampled }
     }
 
     /// Bandwidth and phase delay of a response under a correction, and its phase where that speaks for a reversed channel.
@@ -127,16 +137,18 @@ impl<'a> ReadModel<'a> {
         &self,
         (pair, output): (Pair, &dataset::Channel),
         correction: PairCorrection,
-        settings: BandwidthSettings,
+        (settings, between): (BandwidthSettings, Between),
         bands: Option<&ModelBands>,
     ) -> Result<(Bandwidth, Option<f64>), AttitudeResponseError> {
         let output = AttitudeOutput::of(output)?;
-        let response = model_response(&self.prepared, pair, correction.multiplier);
-        let omega = match &self.model.dynamics {
-            Dynamics::StateSpace(_) => search_frequencies(settings.band),
-            Dynamics::Measured(measured) => measured.omega().to_vec(),
+        let exact = self.sampled.exact(pair, correction.multiplier);
+        let interpolated = self.sampled.interpolated(pair, correction.multiplier);
+        let (response, omega): (&ResponseAt<'_>, _) = match (&self.model.dynamics, between) {
+            (Dynamics::StateSpace(_), Between::Exact) => (&exact, search_frequencies(settings.band)),
+            (Dynamics::StateSpace(_), Between::Interpolated) => (&interpolated, search_frequencies(settings.band)),
+            (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
         };
-        let attitude = AttitudeResponse::new(&response, output, &omega, settings.band)?;
+        let attitude = AttitudeResponse::new(response, output, &omega, settings.band)?;
         let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
         let deviation = bands.map(|bands| PairBand { bands, pair });
         let deviation = deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation);
@@ -211,24 +223,29 @@ impl<'a> PreparedModels<'a> {
         let physics = asked.result.comparison.physics.model;
         let others = swaps.iter().filter(|swap| swap.kind == BundleKind::Physics).map(|swap| swap.model);
         let models: Vec<usize> = std::iter::once(physics).chain(others).collect();
-        let prepared = |&model: &usize| (model, ReadModel::of(Cow::Borrowed(&bundle(BundleKind::Physics)[model])));
+        let band = asked.analysis.study.settings.band;
+        let prepared =
+            |&model: &usize| (model, ReadModel::of(Cow::Borrowed(&bundle(BundleKind::Physics)[model]), band));
         let of_physics = models.iter().map(prepared).collect();
         let coupled = |&model: &usize| {
             let physics = &bundle(BundleKind::Physics)[model];
             let of = asked.result.coupled_model(physics.state_space()?, Pade::default()).ok()?.into_owned();
-            Some((model, ReadModel::of(Cow::Owned(Model { dynamics: Dynamics::StateSpace(of), ..physics.clone() }))))
+            Some((
+                model,
+                ReadModel::of(Cow::Owned(Model { dynamics: Dynamics::StateSpace(of), ..physics.clone() }), band),
+            ))
         };
         let is_coupled = asked.result.coupled.is_some();
         let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
         let flight = &bundle(BundleKind::Identified)[asked.result.comparison.identified.model];
-        let identified = ReadModel::of(Cow::Borrowed(flight));
+        let identified = ReadModel::of(Cow::Borrowed(flight), band);
         Self { asked, physics, of_physics, of_coupled, identified, swaps }
     }
 
-    fn settings(&self, pair: Pair) -> BandwidthSettings {
+    fn settings(&self, pair: Pair, between: Between) -> (BandwidthSettings, Between) {
         let study = &self.asked.analysis.study;
         let command = study.requirements.command_of(&study.dataset.outputs()[pair.output].name);
-        BandwidthSettings { command, band: study.settings.band, above_band: AboveBand::Marked }
+        (BandwidthSettings { command, band: study.settings.band, above_band: AboveBand::Marked }, between)
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
@@ -279,14 +296,19 @@ impl<'a> PreparedModels<'a> {
         let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
         if role == RequirementRole::Identified {
             let (model, bands) = (&self.identified, self.identified.model.bands.as_deref());
-            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings(pair), bands);
+            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings(pair, Between::Exact), bands);
             return bandwidth.map_err(|error| error.to_string());
         }
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
             Some(of) => PairCorrection::of(of, pair).ok_or_else(|| "the net gain is not positive".to_owned())?,
         };
-        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(response, correction, self.settings(pair), None);
+        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(
+            response,
+            correction,
+            self.settings(pair, Between::Exact),
+            None,
+        );
         bandwidth.map_err(|error| error.to_string())
     }
 
@@ -356,9 +378,9 @@ impl<'a> PreparedModels<'a> {
         let model = if swap.kind == BundleKind::Physics { swap.model } else { self.physics };
         let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
         let read = self.physics_of(role, model).ok();
-        let bandwidth = correction
-            .zip(read)
-            .and_then(|(correction, read)| read.bandwidth(response, correction, self.settings(pair), None).ok());
+        let bandwidth = correction.zip(read).and_then(|(correction, read)| {
+            read.bandwidth(response, correction, self.settings(pair, Between::Interpolated), None).ok()
+        });
         bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
     }
 }

@@ -133,3 +133,27 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
     }
     marks
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_beyond_a_level_is_shaded_and_beyond_the_next_one_darker() {
+        let text = r#"[{"name": "Level 2", "axis": "P", "points": [[1, 0], [1, 0.2], [1.5, 0.3]]},
+                       {"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]},
+                       {"name": "back", "axis": "P", "points": [[2, 0], [1.5, 0.2]]},
+                       {"name": "other", "axis": "Q", "points": [[2, 0], [2.5, 0.2]]}]"#;
+        let levels: LevelBoundaries = serde_json::from_str(text).unwrap();
+        let areas = beyond(&levels, "P");
+        let names: Vec<&str> = areas.iter().map(|of| of.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["beyond Level 1", "beyond Level 2"],
+            "the wider lies below; a line that turns back has no side"
+        );
+        assert!(areas[0].color.percent < areas[1].color.percent);
+        let lower: Vec<[f64; 2]> = areas[1].points.iter().map(|of| [of[0], of[1]]).collect();
+        assert_eq!(lower, [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 200.0], [1.5, 300.0]]);
+    }
+}

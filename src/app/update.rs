@@ -69,6 +69,7 @@ impl GdcmApp {
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
+                display.curves.crossings.clear();
                 display.refit_frequency_plots();
             }
             Command::FocusPair(_) => {}
@@ -311,6 +312,7 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
         display.condition = condition;
         display.isolated = None;
         display.curves.selected.clear();
+        display.curves.crossings.clear();
         display.refit_frequency_plots();
     }
 }

@@ -27,6 +27,8 @@ pub struct CurveDisplay {
     pub cursor: Option<f64>,
     /// Frequencies that stay marked \[rad/s\]: none, one or two.
     pub pinned: Vec<f64>,
+    /// Frequencies that the bandwidth of the response shown is read at, by their names \[rad/s\].
+    pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
     /// Whether the plot of errors shows what a pilot does not notice.
@@ -51,6 +53,7 @@ impl Default for CurveDisplay {
             turns: BTreeMap::new(),
             cursor: None,
             pinned: Vec::new(),
+            crossings: Vec::new(),
             lists_values: true,
             shows_muad: false,
             selected: BTreeSet::new(),
@@ -87,6 +90,8 @@ pub enum CurveCommand {
     PointAt(f64),
     /// Mark a frequency \[rad/s\]; a third one takes the place of the first.
     PinCursor(f64),
+    /// Name the frequencies that the bandwidth of the response shown is read at.
+    MarkCrossings(Vec<(&'static str, f64)>),
     /// Take the marks of frequencies away.
     UnpinCursors,
     /// List the values at the cursor, or not.
@@ -141,7 +146,11 @@ impl CurveDisplay {
                     self.pinned.remove(0);
                 }
             }
-            CurveCommand::UnpinCursors => self.pinned.clear(),
+            CurveCommand::UnpinCursors => {
+                self.pinned.clear();
+                self.crossings.clear();
+            }
+            CurveCommand::MarkCrossings(crossings) => self.crossings = crossings,
             CurveCommand::ListValues(wanted) => self.lists_values = wanted,
             CurveCommand::ShowMuad(wanted) => self.shows_muad = wanted,
             CurveCommand::Select(models) => self.selected = models,
@@ -279,7 +288,7 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         .enabled(display.curves.cursor.is_some()),
         Entry::new("Remove marks of frequencies", "In every plot over frequency", CurveCommand::UnpinCursors.into())
             .within(Menu::Curves, 3)
-            .enabled(!display.curves.pinned.is_empty()),
+            .enabled(!(display.curves.pinned.is_empty() && display.curves.crossings.is_empty())),
     ]
 }
 

@@ -66,6 +66,8 @@ pub struct BodeScene<'a> {
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\].
     pub pinned: &'a [f64],
+    /// Frequencies that numbers of the response are read at, by their names \[rad/s\].
+    pub crossings: &'a [(&'static str, f64)],
     /// What every role has at the cursor.
     pub readout: Option<&'a Readout>,
     /// What stands at the right over each pane: what the correction did there, and whether that is to be warned of.
@@ -133,6 +135,7 @@ impl<'a> BodeScene<'a> {
             omega_range: None,
             cursor: None,
             pinned: &[],
+            crossings: &[],
             readout: None,
             notes: [None; 2],
             missing: None,

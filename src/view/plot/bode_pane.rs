@@ -5,6 +5,7 @@ use egui::{
     UiBuilder, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{Axis, LineStyle, PlotPoint, PlotTransform, PlotUi, Span, VLine};
+use gdcm_core::units::telling;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
@@ -65,7 +66,8 @@ pub(super) fn pane_ui(
             let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
             draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);
-            draw_cursors(plot, scene.pinned, emphasis.cursor, palette);
+            let marked = scene.pinned.iter().chain(scene.crossings.iter().map(|(_, omega)| omega));
+            draw_cursors(plot, marked, emphasis.cursor, palette);
         })
     });
     let shown = shown.inner;
@@ -78,6 +80,9 @@ pub(super) fn pane_ui(
     strips_ui(ui, scene.strips, &shown.transform, palette);
     if let (Pane::Magnitude, Some(invalid)) = (pane, scene.invalid) {
         invalid_strip_ui(ui, (scene.band.1, invalid), &shown.transform, palette);
+    }
+    if pane == Pane::Phase {
+        crossing_names_ui(ui, scene.crossings, &shown.transform, palette);
     }
     let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
@@ -246,13 +251,31 @@ fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }
 
-fn draw_cursors(plot: &mut PlotUi<'_>, pinned: &[f64], cursor: Option<f64>, palette: &Palette) {
+fn draw_cursors<'a>(
+    plot: &mut PlotUi<'_>,
+    pinned: impl Iterator<Item = &'a f64>,
+    cursor: Option<f64>,
+    palette: &Palette,
+) {
     for omega in pinned {
         plot.vline(VLine::new("", omega.log10()).color(palette.text.gamma_multiply(0.7)).width(1.0));
     }
     if let Some(log_omega) = cursor {
         let color = palette.text.gamma_multiply(0.55);
         plot.vline(VLine::new("", log_omega).color(color).width(0.8).style(LineStyle::Dotted { spacing: 4.0 }));
+    }
+}
+
+/// Names of marked frequencies over the lower edge, one above another: they may be close to each other.
+fn crossing_names_ui(ui: &Ui, crossings: &[(&str, f64)], transform: &PlotTransform, palette: &Palette) {
+    let (frame, font) = (*transform.frame(), FontId::proportional(SMALL_SIZE));
+    for (line, (name, omega)) in crossings.iter().enumerate() {
+        let x = transform.position_from_point(&PlotPoint::new(omega.log10(), 0.0)).x;
+        if frame.x_range().contains(x) {
+            let at = pos2(x + 3.0, frame.bottom() - 2.0 - 14.0 * line as f32);
+            let words = format!("{name} {}", telling(*omega, 2));
+            ui.painter().with_clip_rect(frame).text(at, Align2::LEFT_BOTTOM, words, font.clone(), palette.text);
+        }
     }
 }
 

@@ -151,7 +151,9 @@ fn ground_menu_ui(
     if entry(ui, "Mark frequency", "Leave a cursor at this frequency; two show what changes between them") {
         events.push(BodeEvent::CursorPinned(subject.omega));
     }
-    if !scene.pinned.is_empty() && entry(ui, "Remove marks", "Take the marks of frequencies away") {
+    if !(scene.pinned.is_empty() && scene.crossings.is_empty())
+        && entry(ui, "Remove marks", "Take the marks of frequencies away")
+    {
         events.push(BodeEvent::CursorsUnpinned);
     }
 }

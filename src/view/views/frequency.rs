@@ -37,6 +37,7 @@ pub(super) fn frequency_plot_ui(
     let scene = BodeScene {
         cursor: display.cursor,
         pinned: &display.pinned,
+        crossings: &display.crossings,
         readout: readout.as_ref(),
         hidden_roles: &display.hidden_roles,
         raised: display.raised,

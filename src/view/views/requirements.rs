@@ -216,8 +216,10 @@ fn plots_ui(
 fn marked_in_bode(requirements: &Requirements, pair: Pair, id: ConditionId) -> Vec<Command> {
     let mut commands = vec![Command::SelectCondition(id), Command::FocusPair(pair), CurveCommand::UnpinCursors.into()];
     if let Some(of) = requirements.bandwidth_of(id, pair, RequirementRole::Corrected) {
-        let crossings = [of.omega_bw_rad_s, of.omega_180_rad_s];
-        commands.extend(crossings.into_iter().flatten().map(|omega| CurveCommand::PinCursor(omega).into()));
+        let crossings =
+            [("ω_phase", of.omega_phase_rad_s), ("ω_gain", of.omega_gain_rad_s), ("ω180", of.omega_180_rad_s)];
+        let known = crossings.into_iter().filter_map(|(name, omega)| Some((name, omega?)));
+        commands.push(CurveCommand::MarkCrossings(known.collect()).into());
     }
     commands.push(Command::ShowView(View::Bode));
     commands

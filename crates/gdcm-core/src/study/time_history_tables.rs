@@ -16,9 +16,10 @@ type Counted = (f64, f64);
 impl TimeHistories {
     /// The conditions that have records, each with their number.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
-        let of_condition = self.records.chunk_by(|a, b| a.condition == b.condition);
-        let records = |of: &[HistoryFinding]| of.chunk_by(|a, b| a.record == b.record).count();
-        of_condition.map(|of| (of[0].condition, records(of))).collect()
+        let of_condition = self.records.chunk_by(|a, b| a.condition == b.condition).map(|of| of[0].condition);
+        // A model may be missing; two records may have the same name.
+        let records = |id| RequirementRole::ALL.map(|role| self.of_role(id, role).count()).into_iter().max();
+        of_condition.map(|id| (id, records(id).unwrap_or_default())).collect()
     }
 
     /// The findings of a condition and a role.

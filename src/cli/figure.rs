@@ -7,15 +7,12 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
 use gdcm_core::study::{
-    Analysis, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, Execution, Study, Unobserved, curves_band,
-    requirements_of,
+    Analysis, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, Study, Unobserved, curves_band,
 };
 use gdcm_files::figure::{
     Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
 };
 use gdcm_files::{figure_format, write_figure};
-
-use crate::executor::Pool;
 
 use super::{
     Failure, FigureArguments, PairChoice, TerminalProgress, analysis_of, condition_of, ids, names, pairs_of, say,
@@ -32,8 +29,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let with_bars = arguments.bars || arguments.view.needs_bars();
     let (analysis, mut engine) = analysis_of(study, &arguments.study, with_bars)?;
     if arguments.view == FigureKind::Requirements {
-        let execution = Execution::new(&Pool, &Unobserved, analysis.conditions.len());
-        request.requirements = Some(Arc::new(requirements_of(&analysis, &execution)?));
+        request.requirements = Some(Arc::new(engine.requirements(&analysis, &Unobserved)?));
     }
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
@@ -131,7 +127,9 @@ fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channe
 
 /// The condition that a figure of one is of.
 fn condition(study: &Study, arguments: &FigureArguments) -> Result<Option<ConditionId>, Failure> {
-    if !arguments.view.is_of_condition() {
+    // Couplings are of all conditions; the poles beside them are of one.
+    let is_asked_for = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
+    if !arguments.view.is_of_condition() && !is_asked_for {
         return Ok(None);
     }
     let Some(id) = arguments.condition else {

@@ -126,3 +126,12 @@ fn the_report_has_a_section_on_couplings() {
         assert!(page.contains(words), "{words}");
     }
 }
+
+#[test]
+fn a_figure_shows_the_poles_of_the_condition_that_is_asked_for() {
+    let desk = Desk::new();
+    let figure = ["figure", "--view", "couplings", "--condition", "3", "--out", "couplings.svg"];
+    desk.gdcm(&[&figure[..], &COUPLED[..]].concat()).assert_done();
+    let text = fs::read_to_string(desk.path("couplings.svg")).unwrap();
+    assert!(text.contains("Poles of condition 3") && text.contains("close to ringing"));
+}

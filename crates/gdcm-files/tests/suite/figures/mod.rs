@@ -5,7 +5,8 @@ use std::sync::{Arc, LazyLock};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::study::{
-    Analysis, CURVE_POINTS, ConditionCurves, Edit, Engine, Requirements, Study, Unobserved, curves_band,
+    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine, Requirements,
+    Study, Unobserved, curves_band,
 };
 use gdcm_files::figure::{
     Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
@@ -22,6 +23,7 @@ struct Example {
     analysis: Analysis,
     curves: Arc<ConditionCurves>,
     requirements: Arc<Requirements>,
+    couplings: Arc<CouplingsAssessment>,
 }
 
 static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
@@ -34,7 +36,9 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     let grid = (curves_band(&study.settings), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
     let requirements = Arc::new(engine.requirements(&analysis, &Unobserved).unwrap());
-    Example { analysis, curves, requirements }
+    let couplings = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
+    let couplings = couplings.unwrap().unwrap().unwrap();
+    Example { analysis, curves, requirements, couplings }
 });
 
 const CONDITION: ConditionId = ConditionId(10);
@@ -63,8 +67,8 @@ impl Example {
     }
 
     fn figure(&self, kind: FigureKind, pairs: Vec<Pair>) -> Figure {
-        let requirements = Some(Arc::clone(&self.requirements));
-        self.request(&FigureRequest { requirements, ..FigureRequest::new(kind, pairs, self.channels()) })
+        let (requirements, couplings) = (Some(Arc::clone(&self.requirements)), Some(Arc::clone(&self.couplings)));
+        self.request(&FigureRequest { requirements, couplings, ..FigureRequest::new(kind, pairs, self.channels()) })
     }
 
     fn request(&self, request: &FigureRequest) -> Figure {

@@ -3,12 +3,12 @@
 use egui::{Color32, CornerRadius, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use gdcm_core::correction::Unmatched;
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, Pair};
 use gdcm_core::fidelity::Cost;
 use gdcm_core::study::Edit;
 use gdcm_files::figure::{Classes, decimals};
 
-use super::cost_map::{CostColumn, MappedCost, columns, worst_of};
+use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
 use super::palette::{HEAT_COSTS, medium};
 use super::{
     BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui, named, painted_text,
@@ -141,7 +141,7 @@ impl<'a> Map<'a> {
 
     fn rail(state: &'a State) -> Self {
         let pairs = state.study.settings.constrained.marked().collect();
-        let columns = vec![CostColumn { head: "J".to_owned(), pairs }];
+        let columns = vec![CostColumn { head: "J".to_owned(), pairs, is_mean: false }];
         Self { state, classes: Classes::of(state.dataset()), columns, pitch: MAP[1], is_rail: true }
     }
 
@@ -208,7 +208,7 @@ impl<'a> Map<'a> {
     ) {
         let left = if self.is_rail { 60.0 } else { MAP[0] };
         for (place, column) in self.columns.iter().enumerate() {
-            let Some((pair, cost)) = worst_of(self.state, id, &column.pairs) else { continue };
+            let Some((pair, cost)) = cost_of_column(self.state, id, column) else { continue };
             let corner = pos2(row.left() + left + self.pitch * place as f32, row.center().y - 0.5 * HALF_CELL[1]);
             let width = HALF_CELL[0].min(0.5 * self.pitch - 1.5);
             let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, HALF_CELL[1]));
@@ -218,9 +218,10 @@ impl<'a> Map<'a> {
                 ui.painter().rect_stroke(cell.expand(2.0), 4.0, Stroke::new(1.5, palette.accent), StrokeKind::Outside);
             }
             let response = ui.interact(cell, ui.scope_id().with(("cost", id, place)), Sense::CLICK);
-            let response = named(response, Role::Button, cost_words(self.state, id, pair, cost));
+            let words = cost_words(self.state, id, (column, pair), cost);
+            let response = named(response, Role::Button, words.clone());
             response.context_menu(|ui| menu_ui(ui, id, marks, commands));
-            if response.on_hover_text(cost_words(self.state, id, pair, cost)).clicked() {
+            if response.on_hover_text(words).clicked() {
                 commands.extend([Command::SelectCondition(id), Command::FocusPair(pair)]);
             }
         }
@@ -281,7 +282,7 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
         let airspeed = flight_state.airspeed_kt.to_string();
         painted_text(ui, row.with_max_x(row.left() + 40.0), -0.01, &airspeed, small.clone(), palette.dim_text);
         for (place, column) in columns.iter().enumerate() {
-            let Some((_, cost)) = worst_of(state, condition.id(), &column.pairs) else { continue };
+            let Some((_, cost)) = cost_of_column(state, condition.id(), column) else { continue };
             let cell = Rect::from_center_size(
                 pos2(center(place), row.center().y),
                 vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]),
@@ -300,12 +301,16 @@ fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     }
 }
 
-fn cost_words(state: &State, condition: ConditionId, pair: gdcm_core::dataset::Pair, cost: Cost) -> String {
+fn cost_words(state: &State, condition: ConditionId, (column, worst): (&CostColumn, Pair), cost: Cost) -> String {
     let [magnitude, phase] = [cost.magnitude, cost.phase].map(|cost| decimals(cost, 1));
-    format!(
-        "{} of condition {condition}: J of magnitude {magnitude}, of phase {phase}",
-        state.dataset().pair_name(pair)
-    )
+    let name = state.dataset().pair_name(worst);
+    if column.is_mean {
+        let responses = column.pairs.len();
+        return format!(
+            "{responses} responses not held, condition {condition}: mean J of magnitude {magnitude}, of phase {phase}; most: {name}"
+        );
+    }
+    format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
 }
 
 /// The dot of a condition, as it is in Net gain.

@@ -1,8 +1,9 @@
-//! The map of costs: J of magnitude and of phase of every held response in every condition, as shades of one hue.
+//! The map of costs: J of magnitude and of phase of every held response in every condition, as shades of one hue; with couplings the
+//! mean of the others beside them.
 
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::fidelity::Cost;
-use gdcm_core::study::Assessed;
+use gdcm_core::study::{Assessed, CouplingCorrection};
 
 use super::State;
 
@@ -35,27 +36,43 @@ impl MappedCost {
 /// More held responses than this are merged to the worst of each input.
 const MOST_COLUMNS: usize = 8;
 
-/// One column of the map: a held response, or those of one input.
+/// One column of the map: a held response, those of one input, or all that are not held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostColumn {
     /// What stands above it.
     pub head: String,
     /// Its responses.
     pub pairs: Vec<Pair>,
+    /// Whether its cost is their mean; else that of the worst.
+    pub is_mean: bool,
 }
 
-/// The columns of the held responses, in the order of the outputs.
+/// The columns of the held responses, in the order of the outputs; and of what couplings are for.
 pub fn columns(state: &State) -> Vec<CostColumn> {
+    let mut columns = held_columns(state);
+    if state.study.settings.couplings != CouplingCorrection::None {
+        let others = state.study.settings.constrained.iter().filter(|(_, is_held)| !**is_held);
+        columns.push(CostColumn {
+            head: "off".to_owned(),
+            pairs: others.map(|(pair, _)| pair).collect(),
+            is_mean: true,
+        });
+    }
+    columns
+}
+
+fn held_columns(state: &State) -> Vec<CostColumn> {
     let dataset = state.dataset();
     let held: Vec<Pair> = state.study.settings.constrained.marked().collect();
     if held.len() > MOST_COLUMNS {
         let of_input = |input: usize| held.iter().copied().filter(|pair| pair.input == input).collect::<Vec<_>>();
         let columns =
             dataset.inputs().iter().enumerate().map(|(input, channel)| (channel.name.clone(), of_input(input)));
-        let columns = columns.map(|(head, pairs)| CostColumn { head, pairs });
+        let columns = columns.map(|(head, pairs)| CostColumn { head, pairs, is_mean: false });
         return columns.filter(|column| !column.pairs.is_empty()).collect();
     }
-    let column = |pair: &Pair| CostColumn { head: dataset.outputs()[pair.output].name.clone(), pairs: vec![*pair] };
+    let head = |pair: &Pair| dataset.outputs()[pair.output].name.clone();
+    let column = |pair: &Pair| CostColumn { head: head(pair), pairs: vec![*pair], is_mean: false };
     held.iter().map(column).collect()
 }
 
@@ -71,11 +88,14 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     Some(if state.display.mapped_cost == MappedCost::Before { change.uncorrected } else { change.corrected })
 }
 
-/// The worst of a column, magnitude and phase each for itself, with the response that has the greater sum.
-pub fn worst_of(state: &State, condition: ConditionId, pairs: &[Pair]) -> Option<(Pair, Cost)> {
-    let costs = pairs.iter().filter_map(|pair| Some((*pair, cost_of(state, condition, *pair)?)));
-    costs.reduce(|(worst, a), (pair, b)| {
-        let both = Cost { magnitude: a.magnitude.max(b.magnitude), phase: a.phase.max(b.phase) };
-        (if b.total() > a.total() { pair } else { worst }, both)
-    })
+/// The cost of a column, magnitude and phase each for itself, with its response that has the greater sum.
+pub fn cost_of_column(state: &State, condition: ConditionId, column: &CostColumn) -> Option<(Pair, Cost)> {
+    let costs: Vec<(Pair, Cost)> =
+        column.pairs.iter().filter_map(|pair| Some((*pair, cost_of(state, condition, *pair)?))).collect();
+    let (worst, _) = *costs.iter().max_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()))?;
+    let of = |part: fn(&Cost) -> f64| {
+        let parts = costs.iter().map(|(_, cost)| part(cost));
+        if column.is_mean { parts.sum::<f64>() / costs.len() as f64 } else { parts.fold(0.0, f64::max) }
+    };
+    Some((worst, Cost { magnitude: of(|cost| cost.magnitude), phase: of(|cost| cost.phase) }))
 }

@@ -35,6 +35,8 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     settle(&mut window);
     assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
     assert!(!texts(&window).contains("None are used"));
+    // The map beside the conditions has what they did off the axis.
+    window.get_by_label_contains("19 responses not held, condition 1: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
     wait_until(&mut window, "the poles", |window| gdcm::view::views::poles(state(window)).is_some());

@@ -139,7 +139,11 @@ impl Requirements {
         ];
         let of_records = histories.filter(|of| !of.records.is_empty());
         let columns = heads.map(str::to_owned).into_iter().chain(of_records.into_iter().flat_map(|of| of.cost_heads()));
-        let mut table = Table::new("Summary: models against flight", columns);
+        let weights = match of_records {
+            Some(_) => "; J_rms over the records that are open, deg, deg/s, ft/s and ft/s\u{b2} weighing the same",
+            None => "",
+        };
+        let mut table = Table::new(format!("Summary: models against flight{weights}"), columns);
         let over_time = |id, role| of_records.into_iter().flat_map(move |found| found.costs(id, role));
         for of in &self.summary {
             let [on_axis, all] = [of.mean_j_on_axis, of.mean_j_all].map(|value| cell(value, 1));

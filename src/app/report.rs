@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::view::{Command, FormKind};
-use gdcm_core::study::{Analysis, Cancelled, Engine, Job, Progress};
+use gdcm_core::study::{Analysis, Cancelled, Engine, Job, Progress, TimeHistories, TimeHistoriesJob};
 use gdcm_files::{Existing, FileError, OutputSet, ReportSource, report, save_report};
 
 use super::{GdcmApp, study_name};
@@ -15,6 +15,8 @@ use super::{GdcmApp, study_name};
 pub struct ReportJob {
     /// What it is about.
     pub analysis: Arc<Analysis>,
+    /// What its models answer to the flight records that are open, where that was looked at.
+    pub histories: Option<Arc<TimeHistories>>,
     /// The files of the study.
     pub source: ReportSource,
     /// Where it goes.
@@ -38,7 +40,7 @@ impl Job for ReportJob {
     type Output = Result<(), FileError>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let report = report((&self.analysis, None), &self.source, engine, progress)?;
+        let report = report((&self.analysis, self.histories.as_deref()), &self.source, engine, progress)?;
         // Whoever stopped it does not want a file any more.
         if progress.cancelled() {
             return Err(Cancelled);
@@ -72,7 +74,10 @@ impl GdcmApp {
             Ok(()) => {
                 let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
                 self.state.forms.shown = None;
-                self.reporting = Some(ReportJob { analysis, source, path, existing, inputs });
+                let found = self.state.results.time_histories.as_ref();
+                let is_of_this = |job: &TimeHistoriesJob| job.analysis.study == analysis.study;
+                let histories = found.filter(|(job, _)| is_of_this(job)).map(|(_, found)| Arc::clone(found));
+                self.reporting = Some(ReportJob { analysis, histories, source, path, existing, inputs });
             }
             Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
         }

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_core::dataset::{ConditionId, Dataset};
-use gdcm_core::requirements::LevelBoundaries;
-use gdcm_core::study::{Analysis, BandwidthFinding, Cancelled, Engine, Progress, Requirements, Table, TimeHistories};
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{
+    Analysis, BandwidthFinding, Cancelled, Engine, Progress, Requirements, Study, Table, TimeHistories,
+};
 
 use super::Unobtrusive;
 use super::page::Page;
@@ -30,7 +31,7 @@ pub(super) fn add_requirements(
          and under the schedule, and of the identified representative. These numbers are no qualification: the tests of the standards \
          are flown at given conditions with given inputs, and judged by people.",
     );
-    add_bandwidth(page, &requirements, &analysis.study.dataset);
+    add_bandwidth(page, &requirements, &analysis.study);
     add_modes(page, &requirements);
     page.subsection("Summary costs");
     page.paragraph(
@@ -47,17 +48,18 @@ pub(super) fn add_requirements(
 }
 
 /// Bandwidth and phase delay of the responses that have one of them, and why others have none.
-fn add_bandwidth(page: &mut Page, requirements: &Requirements, dataset: &Dataset) {
+fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
+    let dataset = &study.dataset;
     page.subsection("Bandwidth and phase delay");
     page.paragraph(
         "Of the attitude that a stick makes (ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742): the bandwidth is the lesser of the frequencies at \
          which 45\u{b0} of phase margin and 6 dB of gain margin are left; the phase delay is the phase lost from \u{3c9}180 to \
-         2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; none is drawn.",
+         2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; only the engineer's own are drawn.",
     );
     let is_known = |of: &&BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
     let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) = requirements.bandwidth.iter().partition(is_known);
     if !known.is_empty() {
-        let figure = requirements_figure(requirements, dataset, &LevelBoundaries::default());
+        let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
         page.figure(
             &figure,
             &figure.title,

@@ -88,11 +88,11 @@ impl BlockModel {
         })
     }
 
-    /// The model in blocks: each block of `|B| = |C|`, real poles in pairs by modulus. None where poles are too close for
-    /// their eigenvectors to be told apart.
+    /// The model in blocks: each block of `|B| = |C|`, real poles in pairs by modulus. None of a model without states, and where poles
+    /// are too close for their eigenvectors to be told apart.
     pub(super) fn of(model: &StateSpace) -> Option<Self> {
-        let modes = Modes::of(model)?;
         let order = model.order();
+        let modes = if order > 0 { Modes::of(model)? } else { return None };
         let (mut blocks, mut basis, mut next) = (Vec::new(), DMatrix::zeros(order, order), 0);
         for (block, columns) in modes.blocks() {
             columns.iter().enumerate().for_each(|(k, column)| basis.set_column(next + k, column));

@@ -134,7 +134,7 @@ impl SubspaceSettings {
 
     /// The same in blocks; none where all its modes are far above the band.
     fn model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
-        BlockModel::of(&self.slow(subspace, order)?).filter(|model| model.order() > 0)
+        BlockModel::of(&self.slow(subspace, order)?)
     }
 }
 

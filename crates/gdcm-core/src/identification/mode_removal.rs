@@ -123,5 +123,8 @@ mod tests {
         }
         assert_eq!(model.without_least_mode(2, &measured).unwrap().order(), 3);
         assert!(model.without_least_mode(2, &measured).unwrap().without_least_mode(2, &measured).is_none());
+        let last = less.without_least_mode(2, &measured).unwrap().without_least_mode(1, &measured).unwrap();
+        assert_eq!(last.order(), 1);
+        assert!(last.without_least_mode(1, &measured).is_none(), "no state would be left");
     }
 }

@@ -49,7 +49,9 @@ fn assessed_couplings(study: &Study, engine: &mut Engine) -> Result<Arc<Coupling
     let asked = if asked == CouplingCorrection::None { CouplingCorrection::MixingAndFeedback } else { asked };
     let refused = |reason: String| Failure::NoResult { reason };
     let found = engine.assess_couplings(study, asked, &TerminalProgress::new("couplings"))?;
-    found.ok_or_else(|| refused("no couplings".to_owned()))?.map_err(|why| refused(why.to_string()))
+    found
+        .ok_or_else(|| refused("no couplings".to_owned()))?
+        .map_err(|why| refused(why.words(&study.dataset.names_of_channels().0)))
 }
 
 /// The figure of one condition, of the curves that the window draws.

@@ -84,8 +84,10 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
         return costs[pair].map(|change| change.corrected);
     }
     let result = analysis.condition(condition)?;
-    let change = result.cost[pair]?;
-    Some(if state.display.mapped_cost == MappedCost::Before { change.uncorrected } else { change.corrected })
+    match state.display.mapped_cost {
+        MappedCost::Before => result.before_couplings().representative.cost[pair],
+        _ => result.cost[pair].map(|change| change.corrected),
+    }
 }
 
 /// The cost of a column, magnitude and phase each for itself, with its response that has the greater sum.

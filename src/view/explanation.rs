@@ -6,9 +6,12 @@ use egui::{CursorIcon, Grid, Label, Response, RichText, Sense, Ui, WidgetText};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::Pair;
-use gdcm_core::study::{ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, SignRole, derivation, remarks};
+use gdcm_core::study::{
+    ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, SignRole, derivation, no_couplings, remarks,
+};
 
 use super::palette::{TITLE_SIZE, medium};
+use super::views::used_couplings;
 use super::{Command, Palette, SMALL_SIZE, State, entries_ui};
 
 /// What asks for a derivation, everywhere.
@@ -93,10 +96,21 @@ pub fn turn_entry(state: &State, channel: Channel, of: Option<SignRole>) -> (Str
     (label, Edit::SetSign { channel, of }.into())
 }
 
-/// The remarks on the result shown, and on the schedule.
+/// The remarks on the result shown, on the schedule, and on the couplings that are used.
 pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
-    remarks(&state.study, shown, schedule)
+    let mut remarks = remarks(&state.study, shown, schedule);
+    remarks.extend(coupling_remarks(state));
+    remarks
+}
+
+/// What couplings that are used are worth and cost, or why there are none; nothing where none are asked for.
+pub fn coupling_remarks(state: &State) -> Vec<Remark> {
+    match (state.analysis().map(|analysis| analysis.asked_couplings()), used_couplings(state)) {
+        (Some(Err(why)), _) => vec![no_couplings(&why)],
+        (Some(Ok(Some(_))), Some(assessment)) => assessment.consequences(state.dataset()),
+        _ => Vec::new(),
+    }
 }
 
 /// The responses and the channels that are in each other's way, of the gains; channels of another sign or unit too.

@@ -7,7 +7,6 @@ use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
     ConditionAnalysis, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, details, lead_words, setting,
 };
-use gdcm_core::units::telling;
 
 use super::palette::medium;
 use super::views::offered_couplings;
@@ -155,14 +154,9 @@ fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
 
 /// What couplings would bring off the axis, where that is worth it, and the click that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some((couplings, [without, with])) = offered_couplings(state) else { return };
-    let text = format!(
-        "Off the axis, J of conditions left out is {} now and would be {} with {}.",
-        telling(without, 1),
-        telling(with, 1),
-        couplings.name()
-    );
-    remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text));
+    let Some((assessment, _)) = offered_couplings(state) else { return };
+    let couplings = assessment.couplings;
+    assessment.offer().into_iter().for_each(|text| remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text)));
     let words = format!("Use {}", couplings.name());
     if ui.small_button(words).on_hover_text("In every condition; undo takes it back").clicked() {
         commands.push(setting::COUPLINGS.to(couplings).into());

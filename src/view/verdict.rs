@@ -3,10 +3,12 @@
 use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy, Unmatched};
 use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_core::response::median;
-use gdcm_core::study::{ConditionAnalysis, Edit, PhaseCorrection, SignRole, Value, setting};
+use gdcm_core::study::{
+    ConditionAnalysis, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole, Value, setting,
+};
 use gdcm_core::units::{number, s_to_ms, signed, telling};
 
-use super::views::offered_couplings;
+use super::views::{offered_couplings, used_couplings};
 use super::{Command, FormKind, Sheet, State, View, turn_entry};
 
 /// Whether gain and phase of the held responses are met, here and in every condition, and what to do.
@@ -102,7 +104,7 @@ impl Verdict {
     fn of_result(state: &State, shown: &ConditionAnalysis) -> Self {
         let reasons = super::remarks_shown(state, shown).len();
         let (steps, note) = steps(state, shown);
-        let caution = caution(shown);
+        let caution = caution(state, shown);
         Self { condition: shown.condition.id(), rows: rows(state, shown), steps, note, caution, reasons }
     }
 
@@ -221,16 +223,31 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
             let free = free.map(|pair| free_step(state, *pair));
             alone(free.into_iter().chain([Step::reasons("Why?")]).collect())
         }
-        PhaseCorrection::Lead => {
-            if let Some((couplings, [without, with])) = offered_couplings(state) {
-                let use_them = Step::new("Use couplings", setting::COUPLINGS.to(couplings));
-                let words = format!("J off the axis {} → {}", telling(without, 0), telling(with, 0));
-                return (vec![use_them, Step::new("Look first", Command::ShowView(View::Couplings))], words);
-            }
+        PhaseCorrection::Lead => couplings_steps(state).unwrap_or_else(|| {
             alone(vec![Step::new("Export corrections…", export()), Step::reasons("Find the cause")])
+        }),
+        PhaseCorrection::Delay => {
+            couplings_steps(state).unwrap_or_else(|| alone(vec![Step::new("Export corrections…", export())]))
         }
-        PhaseCorrection::Delay => alone(vec![Step::new("Export corrections…", export())]),
     }
+}
+
+/// Couplings, where they are worth it; or to do without them, where those that are used are not.
+fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
+    let words = |cost: CouplingCost| {
+        let others = cost.without.others.zip(cost.with.others);
+        others.map_or(String::new(), |(without, with)| {
+            format!("J off the axis {} → {}", telling(without, 0), telling(with, 0))
+        })
+    };
+    let look = || Step::new("Look first", Command::ShowView(View::Couplings));
+    if let Some((assessment, cost)) = offered_couplings(state) {
+        let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
+        return Some((vec![use_them, look()], words(cost)));
+    }
+    let cost = used_couplings(state)?.deciding_cost();
+    let leave_them = Step::new("Switch couplings off", setting::COUPLINGS.to(CouplingCorrection::None));
+    (!cost.is_worth_it()).then(|| (vec![leave_them, look()], words(cost)))
 }
 
 /// The command that opens the form of the export.
@@ -256,8 +273,31 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     upper.or(remedy.lower.map(|lower| [lower, bounds.upper])).map(Value::Range)
 }
 
+/// That there are no couplings where some are asked for, or what they do to poles and loop; else the price of the leads.
+fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+    let of_couplings = coupling_caution(state);
+    let is_trouble = of_couplings.as_ref().is_some_and(|(kind, _)| *kind == RemarkKind::Trouble);
+    let words = of_couplings.map(|(_, words)| words);
+    if is_trouble { words } else { lead_caution(shown).or(words) }
+}
+
+/// The gravest of what there is to say of the couplings that are used, in a few words; the list of reasons has all of it.
+fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
+    if state.analysis()?.asked_couplings().is_err() {
+        return Some((RemarkKind::Trouble, "No couplings could be found".to_owned()));
+    }
+    let cautions = used_couplings(state)?.cautions(state.dataset());
+    let is_trouble = cautions.iter().any(|of| of.kind == RemarkKind::Trouble);
+    match cautions.len() {
+        0 => None,
+        _ if is_trouble => Some((RemarkKind::Trouble, "Couplings: unstable in the band".to_owned())),
+        1 => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
+        count => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
+    }
+}
+
 /// The price of the leads: what the filters of the held response that pays most add above the band (M15.6).
-fn caution(shown: &ConditionAnalysis) -> Option<String> {
+fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
     let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown.held().marked().map(|pair| price.of_pair_db(pair)).fold(0.0, f64::max);
     let top = number(price.limit_rad_s);

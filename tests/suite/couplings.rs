@@ -107,6 +107,12 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     let ended = desk.gdcm(&[&["analyze", "--out", "one"], &COUPLED[..], &held_out[..]].concat());
     ended.assert_done();
     assert!(ended.out.contains("Couplings of 1 condition: three are needed"), "{}", ended.out);
+    // What leaves must not be without couplings where some are asked for.
+    let all: Vec<&str> = ids.iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
+    let export = ["export", "--as", "state-space", "--correction", "own", "--out", "own.mat"];
+    let refused = desk.gdcm(&[&export[..], &COUPLED[..], &all[..]].concat());
+    assert!(refused.error.contains("the study asks for couplings, and there are none: "), "{}", refused.error);
+    assert!(refused.status != 0 && !desk.path("own.mat").exists());
     let wrong = desk.gdcm(&["analyze", "--out", "none", "--couplings", "all"]);
     assert_eq!(wrong.status, 2);
     assert!(wrong.error.contains("feedback"), "{}", wrong.error);

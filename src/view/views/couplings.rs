@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
+use gdcm_core::couplings::LEAST_CONDITIONS;
 use gdcm_core::dataset::Dataset;
 use gdcm_core::study::{
-    AssessedCouplings, CouplingCorrection, CouplingsAssessment, CouplingsJob, PhaseCorrection, RemarkKind, Table,
-    setting,
+    AssessedCouplings, CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection,
+    RemarkKind, Table, setting,
 };
 use gdcm_core::units::telling;
 use gdcm_files::figure::{Figure, FigureRequest, MarkId};
@@ -53,21 +54,34 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     CouplingsJob { study: state.study.clone(), couplings }
 }
 
-/// The job that finds out whether couplings are to be offered: once leads do what a channel can, of three conditions or more.
-pub fn offered_couplings_job(state: &State) -> Option<CouplingsJob> {
+/// The job that finds out what couplings cost where they are used, and whether they are to be offered where they are not: once delays or
+/// leads do what a channel can, of three conditions or more.
+pub fn judged_couplings_job(state: &State) -> Option<CouplingsJob> {
     let settings = &state.study.settings;
-    let is_left = settings.couplings == CouplingCorrection::None && settings.phase == PhaseCorrection::Lead;
-    let analysis = state.analysis().filter(|_| is_left && !state.results.is_behind())?;
-    (analysis.conditions.len() > 2).then(|| couplings_job(state))
+    let analysis = state.analysis().filter(|_| !state.results.is_behind())?;
+    if settings.couplings != CouplingCorrection::None {
+        return Some(couplings_job(state));
+    }
+    let results = || analysis.conditions.values().flatten();
+    let is_left = match settings.phase {
+        PhaseCorrection::None => false,
+        PhaseCorrection::Delay => results().all(|result| result.delays.matched),
+        PhaseCorrection::Lead => true,
+    };
+    (is_left && results().count() >= LEAST_CONDITIONS).then(|| couplings_job(state))
 }
 
-/// What couplings would bring off the axis, where they are not used and that is worth it: J of conditions left out without and with.
-pub fn offered_couplings(state: &State) -> Option<(CouplingCorrection, [f64; 2])> {
-    let job = offered_couplings_job(state)?;
-    let Ok(assessment) = state.couplings(&job)?.as_ref() else { return None };
-    let cost = assessment.deciding_cost();
-    let others = [cost.without.others?, cost.with.others?];
-    cost.is_worth_it().then_some((job.couplings, others))
+/// What couplings would bring off the axis, where they are not used and that is worth it by J of conditions left out.
+pub fn offered_couplings(state: &State) -> Option<(Arc<CouplingsAssessment>, CouplingCost)> {
+    let job = judged_couplings_job(state).filter(|_| state.study.settings.couplings == CouplingCorrection::None)?;
+    let assessment = state.couplings(&job)?.as_ref().ok()?;
+    assessment.costs.left_out.filter(CouplingCost::is_worth_it).map(|cost| (Arc::clone(assessment), cost))
+}
+
+/// What the couplings that are used are worth and cost, once it is known.
+pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
+    let is_used = state.study.settings.couplings != CouplingCorrection::None;
+    state.couplings(&couplings_job(state)).filter(|_| is_used)?.as_ref().ok()
 }
 
 /// Words and tables at the left, the loop and the poles at the right.
@@ -75,7 +89,10 @@ pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comm
     let found = state.couplings(&couplings_job(state)).cloned();
     let assessment = match found {
         Some(Ok(assessment)) => assessment,
-        Some(Err(why)) => return drop(ui.add(Label::new(palette.dim(format!("No couplings: {why}."))).wrap())),
+        Some(Err(why)) => {
+            let why = why.words(&state.dataset().names_of_channels().0);
+            return drop(ui.add(Label::new(palette.dim(format!("No couplings: {why}."))).wrap()));
+        }
         None => return drop(ui.label(palette.dim(state.results.absence()))),
     };
     restore_panel_size(ui, "couplings");
@@ -83,7 +100,11 @@ pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comm
     let panel = Panel::left("couplings").resizable(true).default_size(width).min_size(260.0);
     panel.show(ui, |ui| {
         ScrollArea::vertical().id_salt("couplings in words").auto_shrink(false).show(ui, |ui| {
-            words_ui(ui, state, &assessment, palette, commands);
+            use_ui(ui, state, &assessment, palette, commands);
+            // What decides comes first.
+            let costs = Table { title: "J, mean over the conditions".to_owned(), ..assessment.cost_table() };
+            table_part_ui(ui, &costs, &|_, _| None, palette, commands);
+            words_ui(ui, state, &assessment, palette);
             tables_ui(ui, state, &assessment, palette, commands);
         });
     });
@@ -119,21 +140,32 @@ pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     assessed.as_ref().ok().cloned()
 }
 
-fn words_ui(
+/// Whether the couplings are used, and the click that uses them, or leaves them where they are not worth it.
+fn use_ui(
     ui: &mut Ui,
     state: &State,
     assessment: &CouplingsAssessment,
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    if state.study.settings.couplings == CouplingCorrection::None {
-        let words = format!("None are used. What {} would do:", assessment.couplings.name());
-        ui.label(palette.dim(words));
-        let used = format!("Use {}", assessment.couplings.name());
-        if ui.button(used).on_hover_text("In every condition; undo takes it back").clicked() {
-            commands.push(setting::COUPLINGS.to(assessment.couplings).into());
-        }
+    let is_used = state.study.settings.couplings != CouplingCorrection::None;
+    let (label, couplings) = if is_used {
+        ("Switch the couplings off".to_owned(), CouplingCorrection::None)
+    } else {
+        let name = assessment.couplings.name();
+        ui.label(palette.dim(format!("None are used. What {name} would do:")));
+        (format!("Use {name}"), assessment.couplings)
+    };
+    if is_used && assessment.deciding_cost().is_worth_it() {
+        return;
     }
+    if ui.button(label).on_hover_text("In every condition; undo takes it back").clicked() {
+        commands.push(setting::COUPLINGS.to(couplings).into());
+    }
+}
+
+fn words_ui(ui: &mut Ui, state: &State, assessment: &CouplingsAssessment, palette: &Palette) {
+    ui.add_space(6.0);
     for remark in assessment.remarks(state.dataset()) {
         let words = match remark.kind {
             RemarkKind::Good => RichText::new(&remark.text).color(palette.text),
@@ -159,9 +191,7 @@ fn tables_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let costs = Table { title: "J, mean over the conditions".to_owned(), ..assessment.cost_table() };
     let plain = |_: usize, _: usize| None;
-    table_part_ui(ui, &costs, &plain, palette, commands);
     for table in assessment.matrix_tables(state.dataset()) {
         // What is within its bar is not told from nothing.
         let dim = |row: usize, column: usize| table.rows[row][column].starts_with('(').then_some(palette.dim_text);

@@ -55,8 +55,10 @@ fn visible_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     curves
 }
 
-/// "J 75→61".
+/// "J 75→61": of the physics representative as it is, and of the corrected one with all that is done to it.
 fn cost_note(state: &State, pair: Pair) -> String {
-    let cost = state.shown().and_then(|shown| shown.cost[pair]);
-    cost.map_or(String::new(), |cost| format!("J {:.0}→{:.0}", cost.uncorrected.total(), cost.corrected.total()))
+    let cost = state.shown().and_then(|shown| {
+        shown.before_couplings().representative.cost[pair].zip(shown.cost[pair].map(|change| change.corrected))
+    });
+    cost.map_or(String::new(), |(before, after)| format!("J {:.0}→{:.0}", before.total(), after.total()))
 }

@@ -1,9 +1,12 @@
 //! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
 
+use gdcm::view::Sheet;
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
+use gdcm::view::cost_map::{MappedCost, cost_of};
 use gdcm::view::views::{couplings_job, offered_couplings};
-use gdcm_core::study::{CouplingCorrection, PhaseCorrection, setting};
+use gdcm_core::dataset::ConditionId;
+use gdcm_core::study::{CouplingCorrection, Edit, PhaseCorrection, setting};
 use gdcm_files::figure::Mark;
 
 use super::lists::texts_in;
@@ -29,10 +32,14 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assessed(&mut window);
     let said = texts(&window);
     assert!(said.contains("None are used. What mixing and feedback would do:"), "{said}");
-    assert!(said.contains("condition left out") && said.contains("Loop at the sticks"), "{said}");
+    assert!(said.contains("own correction") && said.contains("Loop at the sticks"), "{said}");
     assert_eq!(state(&window).study, before, "looking decides nothing");
+    give(&mut window, Action::MapCost(MappedCost::Before));
+    let as_it_is = |window: &Window| cost_of(state(window), ConditionId(1), pair(window, "P", "LON"));
+    let uncoupled = as_it_is(&window);
     click(&mut window, "Use mixing and feedback");
     settle(&mut window);
+    assert!(uncoupled.is_some() && as_it_is(&window) == uncoupled, "J before any correction is without couplings too");
     assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
     assert!(!texts(&window).contains("None are used"));
     // The map beside the conditions has what they did off the axis.
@@ -65,10 +72,28 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
     assert!(offered_couplings(state(&window)).is_none(), "nothing is computed before leads are used");
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
     assessed(&mut window);
-    let (couplings, [without, with]) = offered_couplings(state(&window)).expect("worth it on the example (M16.5)");
-    assert!(couplings == CouplingCorrection::MixingAndFeedback && with < 0.6 * without, "{without} {with}");
+    let (offered, cost) = offered_couplings(state(&window)).expect("worth it on the example (M16.5)");
+    let [with, without] = [cost.with, cost.without].map(|of| of.others.unwrap());
+    assert!(offered.couplings == CouplingCorrection::MixingAndFeedback && with < 0.6 * without, "{without} {with}");
     click(&mut window, "Use couplings");
     settle(&mut window);
     assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
     assert!(offered_couplings(state(&window)).is_none());
+    // What they cost is among the reasons, whatever view is shown.
+    assessed(&mut window);
+    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    let said = texts(&window);
+    assert!(said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"), "{said}");
+}
+
+#[test]
+fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
+    let mut window = window();
+    let ids: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
+    ids.iter().for_each(|&condition| give(&mut window, Edit::SetHeldOut { condition, held_out: true }));
+    give(&mut window, setting::COUPLINGS.to(CouplingCorrection::Mixing));
+    settle(&mut window);
+    assert!(texts(&window).contains("No couplings could be found"), "{}", texts(&window));
+    give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
+    assert!(texts(&window).contains("Everything here is without them."), "{}", texts(&window));
 }

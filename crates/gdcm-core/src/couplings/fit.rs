@@ -22,8 +22,6 @@ pub struct CouplingFit {
     /// The proof of the last solve, a convex problem of one optimum: the largest residual of its normal equations over their largest
     /// right side.
     pub residual: f64,
-    /// The weighted sum of squares that the last solve leaves, over what it is without couplings but for the weights.
-    pub cost_ratio: f64,
     /// The outputs that cannot be fed back, for some input has no response of them in any condition.
     pub not_fed_back: Vec<usize>,
     /// The unknowns of which no response says anything: they are as without couplings.
@@ -83,7 +81,6 @@ impl Passes<'_> {
             matrices,
             coefficients,
             residual: last.residual,
-            cost_ratio: last.cost_ratio,
             not_fed_back: left_out.collect(),
             undetermined: last.undetermined.iter().map(|&place| self.unknowns[place]).collect(),
             unknowns: self.unknowns,

@@ -37,8 +37,6 @@ pub(super) struct ConditionBlocks {
     inputs: usize,
     fed_back: usize,
     columns: Vec<ColumnBlocks>,
-    /// Sum of `q^2 |S R'|^2`.
-    target: f64,
 }
 
 /// Room for what stands at one frequency.
@@ -71,7 +69,7 @@ impl ConditionBlocks {
             for input in 0..inputs {
                 scratch.mix(last, input, outputs);
                 if condition.squared_weights((k, input), &scratch.coupled, &mut scratch.squared) {
-                    blocks.target += scratch.weigh(condition.flight(k, input), last, outputs);
+                    scratch.weigh(condition.flight(k, input), last, outputs);
                     blocks.columns[input].add(&scratch, inputs);
                 }
             }
@@ -85,7 +83,7 @@ impl ConditionBlocks {
             gram: vec![0.0; numbers * (numbers + 1) / 2 * inputs * inputs],
             right: vec![0.0; numbers * inputs],
         };
-        Self { inputs, fed_back, columns: vec![column; inputs], target: 0.0 }
+        Self { inputs, fed_back, columns: vec![column; inputs] }
     }
 }
 
@@ -112,8 +110,8 @@ impl Scratch {
         }
     }
 
-    /// `t`, `P` and `z` of an input column of `R'`; returns `sum q^2 |S R'|^2`. `S R' = R' + F K R'`, for `S = I + F K`.
-    fn weigh(&mut self, flight: &[Complex<f64>], last: &LastPass<'_>, outputs: usize) -> f64 {
+    /// `t`, `P` and `z` of an input column of `R'`. `S R' = R' + F K R'`, for `S = I + F K`.
+    fn weigh(&mut self, flight: &[Complex<f64>], last: &LastPass<'_>, outputs: usize) {
         self.t[0] = Complex::new(1.0, 0.0);
         self.t[1..].iter_mut().zip(last.fed_back).for_each(|(number, &output)| *number = flight[output]);
         self.target.copy_from_slice(flight);
@@ -135,7 +133,6 @@ impl Scratch {
                 (self.p_re[l * inputs + j], self.p_im[l * inputs + j]) = (entry.re, -entry.im);
             }
         }
-        self.target.iter().zip(&self.squared).map(|(value, squared)| squared * value.norm_sqr()).sum()
     }
 }
 
@@ -170,8 +167,6 @@ pub(super) struct NormalEquations {
     gram: DMatrix<f64>,
     /// `b`.
     right: DVector<f64>,
-    /// Sum of `q^2 |S R'|^2`.
-    target: f64,
 }
 
 /// The optimum of one pass.
@@ -180,8 +175,6 @@ pub(super) struct PassOptimum {
     pub(super) coefficients: DVector<f64>,
     /// Largest residual of the normal equations over the largest right side, each divided by the root of its diagonal entry.
     pub(super) residual: f64,
-    /// `sum q^2 |...|^2` at the optimum over the same of no couplings.
-    pub(super) cost_ratio: f64,
     /// The unknowns (by place) of which the responses say nothing: they stay as without couplings.
     pub(super) undetermined: Vec<usize>,
 }
@@ -189,7 +182,7 @@ pub(super) struct PassOptimum {
 impl NormalEquations {
     /// Nothing added yet.
     pub(super) fn zeros(unknowns: usize) -> Self {
-        Self { gram: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns), target: 0.0 }
+        Self { gram: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns) }
     }
 
     /// Adds a condition of scaled airspeed `v`.
@@ -216,7 +209,6 @@ impl NormalEquations {
                 }
             }
         }
-        self.target += blocks.target;
     }
 
     /// The optimum, drawn to no couplings by `ridge`.
@@ -249,10 +241,7 @@ impl NormalEquations {
         if !residual.is_finite() || !coefficients.iter().all(|of| of.is_finite()) {
             return Err(singular());
         }
-        // Of two nearly equal sums less than nothing can be left.
-        let cost = |theta: &DVector<f64>| ((&self.gram * theta - 2.0 * &self.right).dot(theta) + self.target).max(0.0);
-        let cost_ratio = cost(&coefficients) / cost(&uncoupled);
         let undetermined = (0..count).filter(|&place| !is_determined(place)).collect();
-        Ok(PassOptimum { coefficients, residual, cost_ratio, undetermined })
+        Ok(PassOptimum { coefficients, residual, undetermined })
     }
 }

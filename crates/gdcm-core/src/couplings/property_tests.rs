@@ -192,7 +192,7 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
         let size = product(column, &dense.target).abs().max(product(column, column));
         assert!(gradient.abs() < 1e-12 * size, "{:?}: {gradient:e} of {size:e}", found.unknowns[place]);
     }
-    assert!(found.residual < 1e-14 && found.cost_ratio > 0.0 && found.cost_ratio < 1.0);
+    assert!(found.residual < 1e-14);
 }
 
 /// The problem with its channels in another order: `outputs[new]` and `inputs[new]` are the old places.

@@ -77,6 +77,11 @@ impl FrequencyGrid {
         Self { omega: log_spaced(band.min(), band.max(), points) }
     }
 
+    /// These frequencies \[rad/s\], which rise: two at least.
+    pub(crate) fn at(omega: Vec<f64>) -> Self {
+        Self { omega }
+    }
+
     /// The frequencies \[rad/s\].
     pub fn omega(&self) -> &[f64] {
         &self.omega

@@ -14,7 +14,7 @@ use crate::uncertainty::Scalar;
 
 use super::{
     BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, CouplingsAssessment, FittedCouplings,
-    LeadCompensated, LeadOffer, Remark, RemarkKind, Study, Uncertainty, scheduled_points,
+    LeadCompensated, LeadOffer, Remark, Study, Uncertainty, no_couplings, scheduled_points,
 };
 
 /// The nominal model of a condition under the scheduled correction (M12).
@@ -63,14 +63,20 @@ impl Analysis {
         self.couplings.as_ref()?.as_ref().ok()
     }
 
+    /// The couplings of a study that is to have some; none where it asks for none.
+    ///
+    /// # Errors
+    /// Why there are none, in words that name the channels: what would leave without them is not what was asked for.
+    pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
+        let words = |error: &CouplingError| error.words(&self.study.dataset.names_of_channels().0);
+        self.couplings.as_ref().map(|found| found.as_ref().map_err(words)).transpose()
+    }
+
     /// What has to be said of the couplings: why there are none, or what they mean, are worth and cost, as far as that was asked for.
     pub fn coupling_remarks(&self) -> Vec<Remark> {
-        match (&self.couplings, &self.coupling_assessment) {
-            (Some(Err(error)), _) => {
-                let words = error.words(&self.study.dataset.names_of_channels().0);
-                vec![Remark::new(RemarkKind::Trouble, format!("No couplings: {words}."))]
-            }
-            (Some(Ok(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
+        match (self.asked_couplings(), &self.coupling_assessment) {
+            (Err(why), _) => vec![no_couplings(&why)],
+            (Ok(Some(_)), Some(assessment)) => assessment.remarks(&self.study.dataset),
             _ => Vec::new(),
         }
     }

@@ -13,7 +13,7 @@ use crate::couplings::{
 use crate::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};
 use crate::executor::{Sequential, each};
 use crate::progress::{Shares, Untold};
-use crate::response::{FrequencyGrid, PreparedModel};
+use crate::response::{FrequencyGrid, PreparedModel, log_spaced};
 use crate::schedule::CostChange;
 
 use super::condition_stages::SUBSTITUTION_PROOF;
@@ -23,8 +23,8 @@ use super::{
     assessed,
 };
 
-/// Frequencies of the singular values, from a tenth of the band to ten times it.
-const MARGIN_POINTS: usize = 90;
+/// Frequencies of the singular values below the band, and from its lower end to ten times its top: 2 % apart over the example's band.
+const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 /// An entry of `M~` or of `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,6 +54,8 @@ pub struct ConditionCouplings {
     pub above_band_db: PairTable<Option<f64>>,
     /// J of the condition left out, on the axis and off it; none where it is in no fit.
     pub left_out: Option<CouplingCost>,
+    /// Kept physics models with matrices, other than the representative, whose loop cannot be closed, and why.
+    pub refused: Vec<(String, String)>,
 }
 
 /// A pole of a kept physics model with a positive real part that it has not without the couplings.
@@ -207,8 +209,7 @@ impl Engine {
         };
         let left_out = self.left_out(&with, (&without, &fitted), (progress, &shares))?;
         let settings = &study.settings;
-        let (low, high) = (settings.band.min() / ABOVE_BAND, settings.band.max() * ABOVE_BAND);
-        let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap_or(settings.band), MARGIN_POINTS);
+        let grid = margin_grid(settings.band);
         let mut assessment = CouplingsAssessment {
             couplings,
             fitted,
@@ -318,6 +319,15 @@ fn costs(without: &Analysis, with: &Analysis, left_out: &[LeftOutCondition]) -> 
     }
 }
 
+/// From a tenth of the band to ten times it, both ends of the band's lower part among the frequencies.
+fn margin_grid(band: Band) -> FrequencyGrid {
+    let [below, above] = MARGIN_POINTS;
+    let mut omega = log_spaced(band.min() / ABOVE_BAND, band.min(), below);
+    omega.pop();
+    omega.extend(log_spaced(band.min(), ABOVE_BAND * band.max(), above));
+    FrequencyGrid::at(omega)
+}
+
 /// What the couplings do to a condition, and the newly unstable poles of its kept physics models.
 fn of_condition(
     study: &Study,
@@ -338,7 +348,7 @@ fn of_condition(
     let singular_values = matrices.least_singular_values(&response);
     let from_band = grid.omega().partition_point(|omega| *omega < study.settings.band.min());
     let above_band_db = relative_change_db(&response, &result.coupled_response(&response), grid.len() - 1);
-    let mut unstable = Vec::new();
+    let (mut unstable, mut refused) = (Vec::new(), Vec::new());
     let mut poles = Err(String::new());
     for (index, model) in physics.iter().enumerate() {
         if progress.cancelled() {
@@ -357,12 +367,15 @@ fn of_condition(
             pole: shift.after,
             is_in_band: (study.settings.band.min()..=study.settings.band.max()).contains(&shift.after.norm()),
         }));
-        if is_representative {
-            poles = found;
+        match found {
+            found if is_representative => poles = found,
+            Err(why) if model.state_space().is_some() => refused.push((model.name.clone(), why)),
+            _ => {}
         }
     }
     let margin = LoopMargin::of(&singular_values[from_band..], &grid.omega()[from_band..]);
-    Ok((ConditionCouplings { airspeed_kt, poles, singular_values, margin, above_band_db, left_out: None }, unstable))
+    let left_out = None;
+    Ok((ConditionCouplings { airspeed_kt, poles, singular_values, margin, above_band_db, left_out, refused }, unstable))
 }
 
 impl ConditionCouplings {

@@ -70,6 +70,27 @@ fn the_diagnosis_comes_first_and_what_is_within_its_bar_is_not_told() {
 }
 
 #[test]
+fn an_unstable_pole_in_the_band_is_told_before_faster_ones_beyond_it() {
+    let unstable = |model: &str, real: f64, is_in_band: bool| UnstablePole {
+        condition: ConditionId(4),
+        model: model.to_owned(),
+        is_representative: false,
+        pole: nalgebra::Complex::from(real),
+        is_in_band,
+    };
+    let mut assessed = (**ASSESSED).clone();
+    assessed.unstable = vec![unstable("fast", 90.0, false), unstable("slow", 2.0, true)];
+    assessed.left_out_fits.pop();
+    let said = assessed.cautions(&EXAMPLE.dataset);
+    let poles = said.iter().find(|of| of.text.contains("newly unstable")).unwrap();
+    assert_eq!(poles.kind, RemarkKind::Trouble);
+    let words = "2 poles of other kept physics models are newly unstable with the couplings: in the band condition 4, slow at 2.000 rad/s; \
+                 condition 4, fast at 90.000 rad/s.";
+    assert_eq!(poles.text, words);
+    assert!(said.iter().any(|of| of.text.contains("rest on 10 of 11 conditions")), "{said:#?}");
+}
+
+#[test]
 fn poles_margins_and_what_happens_above_the_band_are_of_every_condition() {
     let band = EXAMPLE.dataset.band();
     assert!((ASSESSED.omega[0] / band.min() - 0.1).abs() < 1e-9);

@@ -1,5 +1,7 @@
 //! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4).
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Complex, DMatrix};
 
 use crate::couplings::{
@@ -15,12 +17,22 @@ const TOLD: usize = 3;
 /// Shares below this say nothing.
 const NOTHING: f64 = 0.005;
 
+/// That a study which asks for couplings has none: all of it is without them.
+pub fn no_couplings(why: &str) -> Remark {
+    Remark::new(RemarkKind::Trouble, format!("No couplings: {why}. Everything here is without them."))
+}
+
 impl CouplingsAssessment {
     /// All that has to be said: the diagnosis, what couplings are worth, and the cautions.
     pub fn remarks(&self, dataset: &Dataset) -> Vec<Remark> {
-        let good = |text: String| Remark::new(RemarkKind::Good, text);
-        let diagnosis = self.diagnosis(dataset).into_iter().map(good);
-        diagnosis.chain(self.verdict()).chain(self.price(dataset).map(good)).chain(self.cautions(dataset)).collect()
+        let diagnosis = self.diagnosis(dataset).into_iter().map(|text| Remark::new(RemarkKind::Good, text));
+        diagnosis.chain(self.consequences(dataset)).collect()
+    }
+
+    /// What couplings are worth, what they cost, and the cautions.
+    pub fn consequences(&self, dataset: &Dataset) -> Vec<Remark> {
+        let price = self.price(dataset).map(|text| Remark::new(RemarkKind::Good, text));
+        self.verdict().into_iter().chain(price).chain(self.cautions(dataset)).collect()
     }
 
     /// What the largest entries that are told from nothing mean: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°"; "PED follows NY
@@ -147,41 +159,46 @@ impl CouplingsAssessment {
         remarks.extend(undetermined_words(dataset, &fit.undetermined).map(caution));
         let failed = self.conditions.iter().filter_map(|(id, of)| Some((*id, of.poles.as_ref().err()?)));
         remarks.extend(failed.map(|(id, why)| caution(format!("Condition {id}: poles are not known: {why}."))));
+        let refused = self.conditions.iter().flat_map(|(id, of)| of.refused.iter().map(move |refused| (*id, refused)));
+        remarks.extend(refused.map(|(id, (model, why))| {
+            caution(format!("Condition {id}, {model}: what the couplings do to it is not known: {why}."))
+        }));
+        remarks.extend(self.partly_left_out().map(caution));
         remarks
     }
 
-    /// Poles of the representatives one by one, those of the other kept models counted.
+    /// Poles that are newly unstable of the representatives, and of the other kept models; those in the band first.
     fn unstable_words(&self) -> Vec<Remark> {
-        let remark = |of: &UnstablePole, text: String| {
-            Remark::new(if of.is_in_band { RemarkKind::Trouble } else { RemarkKind::Caution }, text)
-        };
-        let of_representatives = self.unstable.iter().filter(|of| of.is_representative).map(|of| {
-            let band = if of.is_in_band { ", in the band" } else { "" };
-            let text = format!(
-                "With the couplings the physics representative of condition {} has an unstable pole more: {}, at {} rad/s{band}.",
-                of.condition,
-                pole_words(of.pole),
-                telling(of.pole.norm(), 3)
-            );
-            remark(of, text)
-        });
-        let others: Vec<&UnstablePole> = self.unstable.iter().filter(|of| !of.is_representative).collect();
-        let worst = others.iter().max_by(|a, b| a.pole.norm().total_cmp(&b.pole.norm()));
-        let of_others = worst.map(|worst| {
-            let models = match others.len() {
-                1 => "One other kept physics model has".to_owned(),
-                count => format!("{count} poles of other kept physics models are"),
+        let remark = |is_representative: bool| {
+            let poles: Vec<&UnstablePole> =
+                self.unstable.iter().filter(|of| of.is_representative == is_representative).collect();
+            let is_in_band = poles.iter().map(|of| of.is_in_band).max()?;
+            let whose = if is_representative { "physics representatives" } else { "other kept physics models" };
+            let text = match poles.len() {
+                1 => {
+                    format!("A pole of the {whose} is newly unstable with the couplings: {}.", unstable_places(&poles))
+                }
+                count => {
+                    format!(
+                        "{count} poles of {whose} are newly unstable with the couplings: {}.",
+                        unstable_places(&poles)
+                    )
+                }
             };
-            let what = if others.len() == 1 { "an unstable pole more" } else { "newly unstable" };
-            let text = format!(
-                "{models} {what} with the couplings, the fastest at {} rad/s ({}, condition {}).",
-                telling(worst.pole.norm(), 3),
-                worst.model,
-                worst.condition
-            );
-            remark(worst, text)
-        });
-        of_representatives.chain(of_others).collect()
+            Some(Remark::new(if is_in_band { RemarkKind::Trouble } else { RemarkKind::Caution }, text))
+        };
+        [true, false].into_iter().filter_map(remark).collect()
+    }
+
+    /// Some condition without which there are no couplings, and how many there are.
+    fn partly_left_out(&self) -> Option<String> {
+        let (all, known) = (self.fitted.problem.conditions.len(), self.left_out_fits.len());
+        (all >= LEAST_CONDITIONS && known < all).then(|| {
+            format!(
+                "J of conditions left out and the bars of the couplings rest on {known} of {all} conditions: without each of the others \
+                 no couplings or no schedule are found."
+            )
+        })
     }
 
     fn ringing_words(&self) -> Option<String> {
@@ -232,21 +249,45 @@ fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
         (true, _) if is_rate(output) => "damping",
         _ => "a coupling",
     };
+    // A share is one only between channels of one unit.
+    let moved = &dataset.inputs()[of.moved];
+    let share = if moved.unit == input.unit {
+        format!("{} % of {}", percent(of.share), moved.name)
+    } else {
+        format!("{} {} per {} of {}", telling(of.share, 3), input.unit, moved.unit, moved.name)
+    };
     format!(
-        "{} follows {} by {} {} per {}, up to {} % of {} at {} rad/s: {meaning} that the physics model does not have right.",
+        "{} follows {} by {} {} per {}, up to {share} at {} rad/s: {meaning} that the physics model does not have right.",
         input.name,
         output.name,
         telling(of.entry, 3).replace('-', "−"),
         input.unit,
         output.unit,
-        percent(of.share),
-        dataset.inputs()[of.moved].name,
         telling(of.omega_rad_s, 1)
     )
 }
 
 fn percent(share: f64) -> String {
     telling(100.0 * share, 1).replace('-', "−")
+}
+
+/// "in the band condition 4, slow at 2 rad/s; condition 1, 8 models at 0.143 to 0.149 rad/s": the poles of one condition together.
+fn unstable_places(poles: &[&UnstablePole]) -> String {
+    let mut places: BTreeMap<(bool, ConditionId), Vec<&UnstablePole>> = BTreeMap::new();
+    poles.iter().for_each(|of| places.entry((!of.is_in_band, of.condition)).or_default().push(of));
+    let place = |((is_beyond, condition), of): (&(bool, ConditionId), &Vec<&UnstablePole>)| {
+        let omega = || of.iter().map(|of| of.pole.norm());
+        let [least, most] =
+            [omega().fold(f64::INFINITY, f64::min), omega().fold(0.0, f64::max)].map(|at| telling(at, 3));
+        let models = match of.as_slice() {
+            of if of.iter().all(|of| of.is_representative) => String::new(),
+            [one] => format!(", {}", one.model),
+            of => format!(", {} models", of.len()),
+        };
+        let at = if least == most { least } else { format!("{least} to {most}") };
+        format!("{}condition {condition}{models} at {at} rad/s", if *is_beyond { "" } else { "in the band " })
+    };
+    places.iter().map(place).collect::<Vec<_>>().join("; ")
 }
 
 /// "−0.30 ± 1.20j rad/s".
@@ -266,4 +307,32 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
     (!names.is_empty()).then(|| {
         format!("No response says anything of these entries, which stay as without couplings: {}.", names.join(", "))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dataset::DatasetHeader;
+    use crate::study::couplings_example_tests::EXAMPLE;
+
+    #[test]
+    fn a_share_of_a_stick_in_another_unit_is_no_percentage() {
+        let old = &EXAMPLE.dataset;
+        let share = FeedbackShare { input: 2, output: 5, entry: 0.092, share: 0.106, moved: 0, omega_rad_s: 0.5 };
+        let words = feedback_words(old, &share);
+        assert!(words.contains("up to 10.6 % of LON at 0.5 rad/s"), "{words}");
+        let mut inputs = old.inputs().to_vec();
+        inputs[0].unit = "inch".into();
+        let header = DatasetHeader {
+            name: old.name().into(),
+            description: String::new(),
+            inputs,
+            outputs: old.outputs().to_vec(),
+            on_axis: old.on_axis().clone(),
+            band: old.band(),
+        };
+        let conditions = old.conditions().iter().map(|of| (**of).clone()).collect();
+        let words = feedback_words(&Dataset::new(header, conditions).unwrap(), &share);
+        assert!(words.contains("up to 0.106 % per inch of LON at 0.5 rad/s"), "{words}");
+    }
 }

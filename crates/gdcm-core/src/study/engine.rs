@@ -1,7 +1,8 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
 use crate::dataset::{Band, Condition, ConditionId, Dataset};
@@ -222,11 +223,12 @@ pub struct WantedFirst<'a> {
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Steps of an analysis: those of the conditions, and once more of those that couplings are fitted to.
+/// Steps of an analysis: those of the conditions; of those that couplings are fitted to once more for what goes into the fit, and
+/// once more for the fit.
 fn steps(study: &Study) -> usize {
     let of = |condition: &Arc<Condition>| {
         let is_fitted_to = study.settings.couplings.kind().is_some() && !study.choice(condition.id()).held_out;
-        ConditionStages::steps(condition) * if is_fitted_to { 2 } else { 1 }
+        ConditionStages::steps(condition) * if is_fitted_to { 3 } else { 1 }
     };
     study.dataset.conditions().iter().map(of).sum()
 }
@@ -239,14 +241,39 @@ fn fit_of(
     (proofs, execution): (ProofBudget, &Execution<'_>),
 ) -> Result<Option<CouplingOutcome>, Cancelled> {
     let Some(kind) = study.settings.couplings.kind() else { return Ok(None) };
-    let chosen = stages.iter_mut().filter(|(id, _)| !study.choice(**id).held_out).collect();
+    let chosen: Vec<_> = stages.iter_mut().filter(|(id, _)| !study.choice(**id).held_out).collect();
+    let chosen_ids: BTreeSet<ConditionId> = chosen.iter().map(|(id, _)| **id).collect();
+    let conditions = study.dataset.conditions().iter().filter(|condition| chosen_ids.contains(&condition.id()));
+    let steps = conditions.map(|condition| ConditionStages::steps(condition)).sum();
     let sources = execution.each_mut(chosen, |(_, stages): (&ConditionId, &mut ConditionStages)| {
         stages.coupling_source(study, grid, proofs, execution)
     })?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
     let key = CouplingFitKey::of(study, kind, &sources);
-    let fit = kept.get_or_fail(key, |key| key.fit(study, grid, &sources, execution.parts()))?;
+    let solves = Solves { execution, steps, told: AtomicUsize::new(0) };
+    let fit = kept.get_or_fail(key, |key| key.fit(study, grid, &sources, (execution.parts().0, &solves)))?;
+    // None of them was told where the fit is known.
+    solves.advanced(1, 1);
     Ok(Some(fit))
+}
+
+/// Tells of the solves of a fit as steps of the analysis.
+struct Solves<'a> {
+    execution: &'a Execution<'a>,
+    /// How many steps the fit is.
+    steps: usize,
+    told: AtomicUsize,
+}
+
+impl Progress for Solves<'_> {
+    fn cancelled(&self) -> bool {
+        self.execution.progress().cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        let told = self.steps * done / total.max(1);
+        self.execution.step(told - self.told.swap(told, Ordering::Relaxed).min(told));
+    }
 }
 
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.

@@ -10,7 +10,6 @@ use crate::couplings::{
 use crate::dataset::{BundleKind, Condition, ConditionId, ContentHash, Dynamics, Model, ModelBands, PairTable};
 use crate::executor::Executor;
 use crate::fidelity::CoherenceWeights;
-use crate::progress::Untold;
 use crate::response::{FrequencyGrid, FrequencyResponse, coherence_at};
 
 use super::{Cancelled, Comparison, GridKey, PhaseCorrection, Progress, Study};
@@ -165,7 +164,7 @@ impl CouplingFitKey {
         (executor, progress): (&dyn Executor, &dyn Progress),
     ) -> Result<CouplingOutcome, Cancelled> {
         let problem = self.problem(study, grid, sources);
-        match fit_couplings(&problem, executor, &Untold(progress)) {
+        match fit_couplings(&problem, executor, progress) {
             Err(CouplingError::Cancelled(cancelled)) => Err(cancelled),
             Err(error) => Ok(Err(error)),
             Ok(fit) => Ok(Ok(Arc::new(FittedCouplings { problem, fit }))),

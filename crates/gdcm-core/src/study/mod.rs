@@ -60,6 +60,7 @@ pub use convention_doubt::*;
 pub use coupled_condition::*;
 pub use couplings_assessment::*;
 pub use couplings_cost::*;
+pub use couplings_words::no_couplings;
 pub use decision_difference::*;
 pub use derivation::{Derivation, ExplainTarget, derivation};
 pub use edit::*;

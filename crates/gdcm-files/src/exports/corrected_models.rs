@@ -103,6 +103,7 @@ struct ExportedModel {
 /// The corrected models that a request asks for, in the dataset's order.
 fn exported_models(analysis: &Analysis, request: &ExportRequest) -> Result<Vec<ExportedModel>, ExportFault> {
     let dataset = &analysis.study.dataset;
+    analysis.asked_couplings().map_err(|why| ExportFault::NoCouplings { why })?;
     if let Some(condition) = request.condition.filter(|&condition| dataset.condition(condition).is_none()) {
         return Err(ExportFault::NoCondition { condition });
     }

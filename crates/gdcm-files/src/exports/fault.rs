@@ -39,6 +39,12 @@ pub enum ExportFault {
     /// There is no schedule to be exported.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
+    /// The study asks for couplings and has none: what would be exported is not what was asked for.
+    #[error("the study asks for couplings, and there are none: {why}; mend that, or set couplings to none")]
+    NoCouplings {
+        /// Why there are none.
+        why: String,
+    },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
     NoResult {

@@ -173,7 +173,8 @@ impl<'e> Export<'e> {
     /// The schedule of the study.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
         let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-        let couplings = self.analysis.fitted_couplings().map(|fitted| fitted.matrices());
+        let couplings = self.analysis.asked_couplings().map_err(|why| ExportFault::NoCouplings { why })?;
+        let couplings = couplings.map(|fitted| fitted.matrices());
         Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source, couplings })
     }
 }

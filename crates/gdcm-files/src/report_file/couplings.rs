@@ -2,6 +2,8 @@
 
 use gdcm_core::study::{Analysis, Cancelled, Engine, Progress};
 
+use crate::figure::{FrequencyUnit, couplings_figure};
+
 use super::Unobtrusive;
 use super::page::Page;
 
@@ -42,4 +44,9 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     page.table(&assessment.cost_table());
     assessment.matrix_tables(&analysis.study.dataset).iter().for_each(|table| page.wide_table(table, COLUMNS));
     page.table(&assessment.pole_table());
+    if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
+        let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \
+                       to ringing. Poles of the condition that is nearest to it.";
+        page.figure(&figure, &figure.title, caption);
+    }
 }

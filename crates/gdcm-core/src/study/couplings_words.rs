@@ -318,7 +318,15 @@ mod tests {
     #[test]
     fn a_share_of_a_stick_in_another_unit_is_no_percentage() {
         let old = &EXAMPLE.dataset;
-        let share = FeedbackShare { input: 2, output: 5, entry: 0.092, share: 0.106, moved: 0, omega_rad_s: 0.5 };
+        let share = FeedbackShare {
+            input: 2,
+            output: 5,
+            entry: 0.092,
+            share: 0.106,
+            moved: 0,
+            condition: ConditionId(1),
+            omega_rad_s: 0.5,
+        };
         let words = feedback_words(old, &share);
         assert!(words.contains("up to 10.6 % of LON at 0.5 rad/s"), "{words}");
         let mut inputs = old.inputs().to_vec();

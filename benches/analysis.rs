@@ -20,7 +20,7 @@ use gdcm_core::dataset::{
 use gdcm_core::fidelity::Discontinuity;
 use gdcm_core::response::{FrequencyGrid, PolarResponse};
 use gdcm_core::study::{
-    BundleMetrics, ConditionResponses, Edit, Engine, Execution, PhaseCorrection, Study, Unobserved, setting,
+    BundleMetrics, ConditionResponses, Edit, Engine, Execution, KnownPoles, PhaseCorrection, Study, Unobserved, setting,
 };
 use gdcm_files::{embedded_example, load_dataset};
 
@@ -240,9 +240,13 @@ fn requirements(criterion: &mut Criterion) {
     let mut analysis = engine.analyze(&study, &Unobserved).expect("nobody stops it");
     let mut group = criterion.benchmark_group("requirements of the embedded example");
     group.sample_size(10);
-    group.bench_function("without intervals", |bencher| bencher.iter(|| engine.requirements(&analysis, &Unobserved)));
+    group.bench_function("without intervals", |bencher| {
+        bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
+    });
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).expect("nobody stops it")));
-    group.bench_function("with intervals", |bencher| bencher.iter(|| engine.requirements(&analysis, &Unobserved)));
+    group.bench_function("with intervals", |bencher| {
+        bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
+    });
     group.bench_function("the analysis itself, everything anew", |bencher| {
         bencher.iter(|| Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));
     });

@@ -5,12 +5,12 @@ use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::{Command, FormKind, View, figure_name, figure_of};
+use crate::view::{Command, FormKind, View, figure_name, figure_of, tables_in_place};
 use gdcm_core::study::{Analysis, Table};
 use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
 use gdcm_files::{
-    ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, csv_text, save_table, write_export, write_figure,
-    write_results,
+    ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, csv_text, figure_format, save_tables,
+    write_export, write_figure, write_results,
 };
 
 use super::GdcmApp;
@@ -80,14 +80,17 @@ impl GdcmApp {
 
     /// Puts the numbers of a view on the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
-        if let Some(figure) = self.figure_of(view) {
-            self.ctx.copy_text(csv_text(&figure.tables()));
+        let tables = tables_in_place(&self.state, view);
+        if let Some(tables) = tables.or_else(|| Some(self.figure_of(view)?.tables())) {
+            self.ctx.copy_text(csv_text(&tables));
             self.done(format!("copied the numbers of {}", view.name()));
         }
     }
 
     /// Asks where to save a view; the folder of the last figure is proposed.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
+        // Tables are numbers, whatever a figure in their place would be saved as.
+        let format = if tables_in_place(&self.state, view).is_some() { FigureFormat::Csv } else { format };
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
         self.state.forms.figure = Some(view);
         let path = self.state.forms.typed_in(FormKind::SaveFigure);
@@ -97,9 +100,23 @@ impl GdcmApp {
 
     /// Saves a view; asks before it overwrites a file.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
-        let Some(figure) = self.figure_of(view) else { return };
         let path = self.at_home(path);
-        let written = write_figure(&figure, width, &path, self.outputs());
+        let written = match tables_in_place(&self.state, view) {
+            Some(tables) if figure_format(&path).is_ok_and(|format| format == FigureFormat::Csv) => {
+                save_tables(&tables, &path, self.outputs())
+            }
+            Some(_) => {
+                let found = sanitized_path(&path);
+                return self.notify_error(format!(
+                    "{} shows tables here: expected a name that ends in .csv, found {found}",
+                    view.name()
+                ));
+            }
+            None => {
+                let Some(figure) = self.figure_of(view) else { return };
+                write_figure(&figure, width, &path, self.outputs())
+            }
+        };
         self.saved_to(written, &path, FormKind::SaveFigure, Command::SaveFigure(view, width, path.clone()));
     }
 
@@ -127,7 +144,7 @@ impl GdcmApp {
     /// Saves a table of the window as CSV; asks before it overwrites a file.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.at_home(path);
-        let written = save_table(&table, &path, self.outputs());
+        let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
         self.saved_to(written, &path, FormKind::SaveTable, Command::SaveTable(table, path.clone()));
     }
 

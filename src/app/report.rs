@@ -4,9 +4,10 @@ use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::view::views::{all_records, known_poles};
 use crate::view::{Command, FormKind};
-use gdcm_core::study::{Analysis, Cancelled, Engine, Job, Progress, TimeHistories, TimeHistoriesJob};
-use gdcm_files::{Existing, FileError, OutputSet, ReportSource, report, save_report};
+use gdcm_core::study::{Analysis, Cancelled, Engine, HistoryRecords, Job, KnownPoles, Progress};
+use gdcm_files::{Existing, FileError, OutputSet, ReportSource, ReportSubject, report, save_report};
 
 use super::{GdcmApp, study_name};
 
@@ -15,8 +16,10 @@ use super::{GdcmApp, study_name};
 pub struct ReportJob {
     /// What it is about.
     pub analysis: Arc<Analysis>,
-    /// What its models answer to the flight records that are open, where that was looked at.
-    pub histories: Option<Arc<TimeHistories>>,
+    /// The flight records that are open, which its models answer to.
+    pub records: Vec<HistoryRecords>,
+    /// The poles that were identified.
+    pub known: KnownPoles,
     /// The files of the study.
     pub source: ReportSource,
     /// Where it goes.
@@ -30,7 +33,10 @@ pub struct ReportJob {
 impl PartialEq for ReportJob {
     fn eq(&self, other: &Self) -> bool {
         let decided = |job: &Self| (job.source.clone(), job.path.clone(), job.existing);
-        Arc::ptr_eq(&self.analysis, &other.analysis) && decided(self) == decided(other)
+        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
+        same_analysis
+            && decided(self) == decided(other)
+            && (&self.records, &self.known) == (&other.records, &other.known)
     }
 }
 
@@ -40,7 +46,12 @@ impl Job for ReportJob {
     type Output = Result<(), FileError>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let report = report((&self.analysis, self.histories.as_deref()), &self.source, engine, progress)?;
+        let histories = match self.records.as_slice() {
+            [] => None,
+            records => Some(engine.time_histories(&self.analysis, records, progress)?),
+        };
+        let subject = ReportSubject { analysis: &self.analysis, histories: histories.as_ref(), known: &self.known };
+        let report = report(subject, &self.source, engine, progress)?;
         // Whoever stopped it does not want a file any more.
         if progress.cancelled() {
             return Err(Cancelled);
@@ -74,10 +85,10 @@ impl GdcmApp {
             Ok(()) => {
                 let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
                 self.state.forms.shown = None;
-                let found = self.state.results.time_histories.as_ref();
-                let is_of_this = |job: &TimeHistoriesJob| job.analysis.study == analysis.study;
-                let histories = found.filter(|(job, _)| is_of_this(job)).map(|(_, found)| Arc::clone(found));
-                self.reporting = Some(ReportJob { analysis, histories, source, path, existing, inputs });
+                // What requirements are asked with has no part in the live answer, which may be older.
+                let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
+                let (records, known) = (all_records(&self.state), known_poles(&self.state));
+                self.reporting = Some(ReportJob { analysis, records, known, source, path, existing, inputs });
             }
             Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
         }

@@ -1,7 +1,10 @@
 //! `gdcm analyze` and `gdcm report`: the same analysis, written as files of results or as one page.
 
 use gdcm_core::message_text::sanitized_path;
-use gdcm_files::{ReportSource, make_directory, report as report_of, result_paths, save_report, write_results};
+use gdcm_core::study::KnownPoles;
+use gdcm_files::{
+    ReportSource, ReportSubject, make_directory, report as report_of, result_paths, save_report, write_results,
+};
 
 use super::summary::summary;
 use super::{
@@ -41,7 +44,9 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let study_file = arguments.study.file.as_deref().filter(|file| loaded.path() != Some(file));
     let source = ReportSource::of(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
-    let report = report_of((&analysis, histories.as_ref()), &source, &mut engine, &progress)?;
+    let known = KnownPoles::default();
+    let subject = ReportSubject { analysis: &analysis, histories: histories.as_ref(), known: &known };
+    let report = report_of(subject, &source, &mut engine, &progress)?;
     drop(progress);
     save_report(&report, &arguments.out, outputs)?;
     let solved = analysis.conditions.values().filter(|outcome| outcome.is_ok()).count();

@@ -7,7 +7,7 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Dataset, Pair};
 use gdcm_core::study::{
-    Analysis, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, Study, Unobserved, curves_band,
+    Analysis, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, KnownPoles, Study, Unobserved, curves_band,
 };
 use gdcm_files::figure::{
     Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
@@ -29,7 +29,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let with_bars = arguments.bars || arguments.view.needs_bars();
     let (analysis, mut engine) = analysis_of(study, &arguments.study, with_bars)?;
     if arguments.view == FigureKind::Requirements {
-        request.requirements = Some(Arc::new(engine.requirements(&analysis, &Unobserved)?));
+        request.requirements = Some(Arc::new(engine.requirements(&analysis, &KnownPoles::default(), &Unobserved)?));
     }
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);

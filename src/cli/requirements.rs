@@ -5,7 +5,8 @@ use std::path::Path;
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::requirements::{ModeVerdict, ToleranceTable};
 use gdcm_core::study::{
-    Analysis, BandwidthFinding, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table, TimeHistories,
+    Analysis, BandwidthFinding, KnownPoles, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table,
+    TimeHistories,
 };
 use gdcm_core::units::s_to_ms;
 use gdcm_files::{OutputSet, REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
@@ -32,7 +33,8 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     make_directory(out)?;
     let records = histories.read(&study.dataset)?;
     let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
-    let requirements = engine.requirements(&analysis, &TerminalProgress::new("reading bandwidths"))?;
+    let requirements =
+        engine.requirements(&analysis, &KnownPoles::default(), &TerminalProgress::new("reading bandwidths"))?;
     let histories = time_histories(&analysis, &records)?;
     let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
     write_requirements((&requirements, &histories), dataset, out, outputs)?;
@@ -195,7 +197,10 @@ fn history_section(histories: &TimeHistories) -> String {
             0,
             "",
             LABEL,
-            "rms error J_rms [deg, deg/s, ft/s, ft/s^2] and Theil's coefficients, over all records of a condition:",
+            &format!(
+                "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",
+                histories.weights_words().replace('\u{b2}', "^2")
+            ),
         )
         + &indented(&Table { title: String::new(), ..costs }, 2)
 }

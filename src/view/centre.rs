@@ -64,7 +64,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     let rest = inner.with_min_x(left.response.rect.right() + 8.0);
     ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::right_to_left(Align::Center)), |ui| {
         let view = state.display.arrangement.view();
-        figure_button_ui(ui, view, commands);
+        figure_button_ui(ui, state, view, commands);
         let fit = named(ui.add(Button::new("Fit").frame(false)), Role::Button, "Fit");
         if fit.on_hover_text("Bring every curve into view (F, or double click)").clicked() {
             commands.push(Command::FitPlots);
@@ -212,7 +212,7 @@ fn row_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
 fn tools_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
     // That of the view in front stands in the bar.
     if view != state.display.arrangement.view() {
-        figure_button_ui(ui, view, commands);
+        figure_button_ui(ui, state, view, commands);
     }
     (view.kind().tools)(ui, state, palette, commands);
     if view.kind().is_of_all_conditions && state.others_are_older() {

@@ -31,7 +31,7 @@ pub struct CurveDisplay {
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
-    /// Whether the plot of errors shows what a pilot does not notice.
+    /// Whether Bode and the plot of errors show what a pilot does not notice.
     pub shows_muad: bool,
     /// Models that a box was drawn over.
     pub selected: BTreeSet<ModelId>,

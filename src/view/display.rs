@@ -85,8 +85,8 @@ pub struct Display {
     pub shows_test: bool,
     /// Which page of requirements is shown.
     pub requirements_page: RequirementsPage,
-    /// Its order.
-    pub requirements_sorting: Sorting,
+    /// Orders of its tables.
+    pub requirements_sorting: [Sorting; 2],
     /// Whether the plots of gains show no error bars and bands.
     pub hide_bars: bool,
     /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.
@@ -162,7 +162,7 @@ pub struct Preferences {
     pub phase_error: PhaseErrorUnit,
     /// Roles that are hidden or shown otherwise than at first, whichever later versions hide at first.
     pub hidden_roles: BTreeSet<Role>,
-    /// Whether the plot of errors shows what a pilot does not notice.
+    /// Whether Bode and the plot of errors show what a pilot does not notice.
     pub shows_muad: bool,
     /// Whether the bands of identified models are drawn.
     pub shows_bands: bool,

@@ -2,12 +2,14 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
+use gdcm_core::study::Table;
 use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::plot::{BodeView, Pane};
 use super::views::{assessed_pairs, assessment_choice};
 use super::views::{
-    bode_options, condition_source, net_gain_pairs, shown_couplings, shown_over_time, shown_requirements,
+    bode_options, condition_source, net_gain_pairs, requirement_tables, shown_couplings, shown_over_time,
+    shown_requirements,
 };
 use super::{Command, State, View, named};
 
@@ -85,17 +87,23 @@ fn chosen(view: &BodeView) -> BodeOptions {
     BodeOptions { omega: view.chosen_omega(), values, ..BodeOptions::default() }
 }
 
+/// The tables that a view shows in place of a figure; none where it shows one.
+pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
+    (view == View::Requirements).then(|| requirement_tables(state)).flatten()
+}
+
 /// The button that copies or saves what a view shows.
-pub(super) fn figure_button_ui(ui: &mut Ui, view: View, commands: &mut Vec<Command>) {
+pub(super) fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
     if view.kind().figure.is_none() {
         return;
     }
+    let has_figure = tables_in_place(state, view).is_none();
     let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
         if ui.button("Copy the numbers").on_hover_text("As CSV, to the clipboard").clicked() {
             commands.push(Command::CopyFigure(view));
             ui.close();
         }
-        for format in FigureFormat::ALL {
+        for format in FigureFormat::ALL.into_iter().filter(|format| has_figure || *format == FigureFormat::Csv) {
             let text = format!("Save as {}…", format.extension().to_uppercase());
             if ui.button(text).on_hover_text(format.words()).clicked() {
                 commands.push(Command::AskSaveFigure(view, format));

@@ -55,7 +55,7 @@ pub use explanation::{
     QUESTION, gain_conflict_marks, question_menu_ui, remarks_shown, toggle_costs, turn_entry, value_label_ui,
 };
 use figures::figure_button_ui;
-pub use figures::{figure_name, figure_of, views_with_figure};
+pub use figures::{figure_name, figure_of, tables_in_place, views_with_figure};
 pub use focus::{Region, leave_region, region_place, region_ui, take_escape, was_focused};
 pub use help::keys_page_ui;
 pub use number_field::{Entered, NumberField, focus_field};

@@ -10,9 +10,10 @@ use gdcm_core::identification::Preparation;
 use gdcm_core::records::{LaidOutRecord, RecordChannels, TimeWish};
 use gdcm_core::requirements::ToleranceTable;
 use gdcm_core::study::{
-    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, Progress, Study, Unobserved, time_histories_of,
+    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, KnownPoles, Progress, RequirementRole, Study,
+    Unobserved, time_histories_of,
 };
-use gdcm_files::{ReportSource, example_records, load_dataset, report, save_study};
+use gdcm_files::{ReportSource, ReportSubject, example_records, load_dataset, report, save_study};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 
@@ -45,8 +46,13 @@ static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
 
 static REPORT: LazyLock<String> = LazyLock::new(example_report);
 
+fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
+    static NOTHING: LazyLock<KnownPoles> = LazyLock::new(KnownPoles::default);
+    ReportSubject { analysis, histories: None, known: &NOTHING }
+}
+
 fn example_report() -> String {
-    report((&ANALYSIS, None), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
+    report(without_records(&ANALYSIS), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
 }
 
 /// The page as XML; its document type is HTML's, which names no other file.
@@ -91,7 +97,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let engine = &mut Engine::default();
     let uncertainty = Some(Arc::new(engine.uncertainty(&ANALYSIS, &Unobserved).unwrap()));
     let analysis = Analysis { uncertainty, ..ANALYSIS.clone() };
-    let requirements = engine.requirements(&analysis, &Unobserved).unwrap();
+    let requirements = engine.requirements(&analysis, &KnownPoles::default(), &Unobserved).unwrap();
     let cells = texts(&parsed(&REPORT), "td");
     for row in requirements.summary_table(None).rows {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
@@ -111,11 +117,16 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let table = ToleranceTable::default();
     let histories = time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
     let source = ReportSource::of(&EXAMPLE, None);
-    let report = report((&analysis, Some(&histories)), &source, engine, &Unobserved).unwrap();
+    let subject = ReportSubject { histories: Some(&histories), ..without_records(&analysis) };
+    let report = report(subject, &source, engine, &Unobserved).unwrap();
     let cells = texts(&parsed(&report), "td");
-    for row in histories.share_table().rows.into_iter().chain(histories.cost_table().rows) {
+    let of_records = histories.record_table(ConditionId(3));
+    assert!(!of_records.rows.is_empty(), "the physics model leaves some corridor");
+    for row in histories.share_table().rows.into_iter().chain(of_records.rows) {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
+    let rms = histories.j_rms(ConditionId(3), RequirementRole::Identified).unwrap();
+    assert!(cells.contains(&format!("{rms:.2}")) && report.contains("J_rms over all records of a condition"));
     assert!(report.contains("Conditions 1, 2, 4, 5, 6, 7, 8, 9, 10, 11: no flight record of it was given."));
 }
 
@@ -185,7 +196,7 @@ impl Progress for Impatient {
 fn a_report_that_is_not_wanted_any_more_is_given_up() {
     let impatient = Impatient(AtomicUsize::new(2));
     let source = ReportSource::of(&EXAMPLE, None);
-    assert_eq!(report((&ANALYSIS, None), &source, &mut Engine::default(), &impatient), Err(Cancelled));
+    assert_eq!(report(without_records(&ANALYSIS), &source, &mut Engine::default(), &impatient), Err(Cancelled));
 }
 
 /// The small dataset with names that are markup, and a condition that has no result.
@@ -285,6 +296,7 @@ fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
     let written = fs::read_to_string(&path).unwrap();
     let analysis = state(&window).results.analysis.clone().unwrap();
     let expected =
-        report((&analysis, None), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap();
+        report(without_records(&analysis), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved)
+            .unwrap();
     assert!(written == expected, "what the command would write");
 }

@@ -187,3 +187,109 @@ fn a_table_of_tolerances_is_written_edited_and_used() {
     let ended = desk.gdcm(&["requirements", "small.json", "--records", "nothing.csv", "--out", ".", "--force"]);
     ended.assert_failed(2, &["nothing.csv"]);
 }
+
+#[test]
+fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["requirements", "--attitude-command", "P", "--out", ".", "--quiet"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let written = crate::read_json(&desk.path("requirements.json"));
+    assert_eq!(written["attitude_command"], json!(["P"]));
+    let findings = entries(&written["bandwidth"]);
+    let ruled = |output: &str| -> Vec<&Value> {
+        let gain_first = |of: &&Value| of["output"] == output && of["gain_limited"] == true;
+        findings.iter().filter(gain_first).map(|of| &of["rule"]).collect()
+    };
+    assert!(findings.iter().filter(|of| of["output"] == "P").all(|of| of["omega_bw_rad_s"] == of["omega_phase_rad_s"]));
+    assert!(ruled("P").iter().all(|rule| **rule == "phase"), "of attitude command the phase margin alone");
+    // The intervals of a number lie about it, those of swapped models too.
+    let mut swapped = 0;
+    for of in findings.iter().filter(|of| of["role"] == "physics") {
+        let (bandwidth, ends) = (&of["omega_bw_rad_s"], &of["interval"]["omega_bw_rad_s"]);
+        if let (Some(bandwidth), Some(low), Some(high)) = (bandwidth.as_f64(), ends[0].as_f64(), ends[1].as_f64()) {
+            assert!(low <= bandwidth && bandwidth <= high && low < high, "{of}");
+            swapped += 1;
+        }
+    }
+    assert!(swapped > 10, "most bandwidths of the example have kept models beside theirs: {swapped}");
+
+    desk.gdcm(&["requirements", "--attitude-command", "X", "--out", "."]).assert_failed(2, &["X"]);
+    let levels = r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
+    std::fs::write(desk.path("levels.json"), levels).unwrap();
+    let figure = ["figure", "--view", "requirements", "--levels", "levels.json", "--out", "levels.svg"];
+    desk.gdcm(&figure).assert_done();
+    assert!(std::fs::read_to_string(desk.path("levels.svg")).unwrap().contains("Level 1 of the tests"));
+    std::fs::write(desk.path("levels.json"), "[]]").unwrap();
+    desk.gdcm(&["figure", "--view", "requirements", "--levels", "levels.json", "--out", "b.svg"])
+        .assert_failed(2, &["levels.json"]);
+}
+
+#[test]
+fn what_requirements_are_asked_with_comes_back_with_the_study() {
+    use gdcm_core::study::{Edit, OverviewLimits, RequirementSettings, Study};
+    let desk = Desk::new();
+    let loaded = gdcm_files::load_dataset(&desk.path("small.json")).unwrap();
+    let mut study = Study::new(loaded.dataset.clone());
+    let mut settings = RequirementSettings::clone(&study.requirements);
+    let levels = r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
+    settings.levels = serde_json::from_str(levels).unwrap();
+    let mut rows = settings.tolerances.rows().to_vec();
+    rows[0].absolute = 4.25;
+    settings.tolerances = gdcm_core::requirements::ToleranceTable::new("edited", rows).unwrap();
+    let mut modes = settings.mode_tolerances.rows().to_vec();
+    modes[1].period_s = Some(0.75);
+    settings.mode_tolerances = modes.try_into().unwrap();
+    settings.overview = OverviewLimits { bandwidth: 0.15, ..OverviewLimits::default() };
+    settings.attitude_command.insert("P".to_owned());
+    study.apply(&Edit::SetRequirements("levels", std::sync::Arc::new(settings))).unwrap();
+    let path = desk.path("a.gdcm-study.json");
+    gdcm_files::save_study(&study, &loaded, &path).unwrap();
+    let opened = gdcm_files::open_study(&path).unwrap();
+    assert_eq!(opened.study.requirements, study.requirements);
+    // The command takes them from the study.
+    desk.gdcm(&["requirements", "a.gdcm-study.json", "--write-tolerances", "mine.json"]).assert_done();
+    assert_eq!(crate::read_json(&desk.path("mine.json"))["tolerances"][0]["absolute"], json!(4.25));
+}
+
+#[test]
+fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
+    use gdcm_core::executor::{Executor, Sequential};
+    use gdcm_core::study::{Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved};
+    use gdcm_files::figure::{Mark, record_history_figure};
+    let dataset = crate::EXAMPLE.dataset.clone();
+    let analysis = Engine::default().analyze(&Study::new(dataset.clone()), &Unobserved).unwrap();
+    let channels = gdcm_core::records::RecordChannels::of_dataset(&dataset);
+    let table = gdcm_files::example_records(3).unwrap().remove(0);
+    let record = gdcm_core::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
+    let flight = std::sync::Arc::clone(record.used_flight().unwrap());
+    let (inputs, outputs) = dataset.names_of_channels();
+    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let job = RecordHistoryJob {
+        tolerances: analysis.study.requirements.tolerances.clone(),
+        analysis: std::sync::Arc::new(analysis),
+        condition: gdcm_core::dataset::ConditionId(3),
+        record: HistoryRecord { flight, held_out: false },
+        preparation: gdcm_core::identification::Preparation::of(&inputs, &outputs),
+    };
+    let mut executor: Box<dyn Executor> = Box::new(Sequential);
+    let history = job.run(&mut executor, &Unobserved).unwrap().unwrap();
+    let figure = record_history_figure(&history, &dataset, 0);
+    assert_eq!(figure.plots.len(), 1 + history.quantities.len());
+    for (plot, of) in figure.plots[1..].iter().zip(&history.quantities) {
+        assert_eq!(plot.panels.len(), 2, "the record above what is left of it less flight");
+        let starts: Vec<Vec<f64>> =
+            of.models.iter().map(|(_, check)| check.windows.iter().map(|window| window.start_s).collect()).collect();
+        assert!(starts.windows(2).all(|pair| pair[0] == pair[1]), "all models in the same windows: {starts:?}");
+        let (_, physics) = of.models.iter().find(|(role, _)| *role == RequirementRole::Physics).unwrap();
+        for (panel, is_difference) in plot.panels.iter().zip([false, true]) {
+            let corridor =
+                panel.marks.iter().find_map(|mark| if let Mark::Envelope(of) = mark { Some(of) } else { None });
+            let [_, low, high] = corridor.unwrap().points[0];
+            let (flown, width) = (physics.windows[0].flown[0], physics.windows[0].width[0]);
+            let middle = if is_difference { 0.0 } else { flown };
+            assert!((low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12);
+            let is_wide = |mark: &Mark| matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none());
+            assert_eq!(panel.marks.iter().any(is_wide), physics.share_inside() < 1.0, "{}", plot.title);
+        }
+    }
+}

@@ -28,9 +28,14 @@ where
 }
 
 /// A cell that no spreadsheet takes for a formula, and no terminal for a command: one that begins with `=`, `+`, `-` or `@` and is no
-/// number stands behind an apostrophe, control characters and invisible ones are spelt out.
+/// number stands behind an apostrophe, control characters and invisible ones are spelt out. Numbers have the minus that programs read, and a
+/// dash alone is the mark of what has none.
 fn plain(cell: &str) -> String {
-    let is_formula = cell.starts_with(['=', '+', '-', '@']) && cell.parse::<f64>().is_err();
+    let number = cell.replacen('\u{2212}', "-", 1);
+    if number.parse::<f64>().is_ok() {
+        return number;
+    }
+    let is_formula = cell.len() > 1 && cell.starts_with(['=', '+', '-', '@']);
     format!("{}{}", if is_formula { "'" } else { "" }, sanitized(cell))
 }
 
@@ -57,9 +62,9 @@ pub fn csv_text(tables: &[Table]) -> String {
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes a table as CSV: the headings, then a line for each row. What exists already is kept or replaced as `outputs` says.
-pub fn save_table(table: &Table, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
-    outputs.add(path, |file| write_tables(file, std::slice::from_ref(table)))?;
+/// Writes tables as CSV, each its headings, then a line for each row. What exists already is kept or replaced as `outputs` says.
+pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
+    outputs.add(path, |file| write_tables(file, tables))?;
     outputs.persist()
 }
 
@@ -88,6 +93,8 @@ mod tests {
             ("+5 kt", "'+5 kt"),
             ("-1.5e-3", "-1.5e-3"),
             ("+2", "+2"),
+            ("\u{2212}2.5", "-2.5"),
+            ("-", "-"),
             ("\u{1b}]0;evil\u{7}", "\\u{1b}]0;evil\\u{7}"),
             ("\t=1", "\\t=1"),
             ("Δφ – 5", "Δφ – 5"),
@@ -111,9 +118,9 @@ mod tests {
     fn a_table_is_written_whole_and_over_nothing_that_is_there() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        save_table(&table(""), &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
+        save_tables(&[table("")], &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "model,J [-]\n\"V+5kt, again\",1.5\n");
-        let again = save_table(&table(""), &path, OutputSet::new(Existing::Keep, Vec::new()));
+        let again = save_tables(&[table("")], &path, OutputSet::new(Existing::Keep, Vec::new()));
         assert!(matches!(again, Err(FileError::Exists { .. })));
     }
 }

@@ -41,7 +41,7 @@ pub mod variables;
 mod zip_files;
 
 pub use corrections_file::*;
-pub use csv_table::{csv_text, save_table};
+pub use csv_table::{csv_text, save_tables};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
     save_dataset, write_example,
@@ -67,7 +67,7 @@ pub use record_files::{
     relative_entry,
 };
 pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
-pub use report_file::{ReportSource, assessment_sentence, report, save_report};
+pub use report_file::{ReportSource, ReportSubject, assessment_sentence, report, save_report};
 pub use requirement_tables::{add_tolerances, load_tolerances, read_levels};
 pub use requirements_file::{REQUIREMENT_FILES, requirement_paths, write_requirements};
 pub use rules_file::{add_rules, load_rules, rules_path};

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use gdcm_core::dataset::ConditionId;
+use gdcm_core::requirements::BandwidthRule;
 use gdcm_core::study::{
     BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding, TimeHistories,
     ToleranceFinding,
@@ -169,6 +170,9 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
     if name == "omega_bw_rad_s" && finding.gain_limited {
         remarks.push("gain-limited".to_owned());
     }
+    if name == "omega_bw_rad_s" && finding.rule == Some(BandwidthRule::PhaseGainUnknown) {
+        remarks.push("of the phase margin; the gain margin is not known".to_owned());
+    }
     if name == "phase_delay_s" && finding.phase_delay_of_line {
         remarks.push("of the least-squares line".to_owned());
     }
@@ -240,8 +244,12 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         record: &finding.record,
         tolerance: "",
     };
-    let why = if finding.j_rms.is_none() { "no output is an angle, a rate, a speed or an acceleration" } else { "" };
-    let rms = subject.row("j_rms", finding.j_rms, None, why.to_owned());
+    let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
+        (None, _) => "no output is an angle, a rate, a speed or an acceleration".to_owned(),
+        (Some(_), []) => String::new(),
+        (Some(_), left_out) => format!("without {}", left_out.join(", ")),
+    };
+    let rms = subject.row("j_rms", finding.j_rms, None, remark);
     let theil = finding
         .theil
         .iter()

@@ -25,6 +25,8 @@ use crate::view::palette::{Palette, SMALL_SIZE, medium};
 
 const TITLE_HEIGHT: f32 = 18.0;
 const RIGHT_MARGIN: f32 = 8.0;
+/// Between the panels of a plot \[pt\].
+const PANEL_GAP: f32 = 4.0;
 /// Width of the strip at the left with the label of the vertical axes, where it is one for all \[pt\].
 const LABEL_STRIP: f32 = 16.0;
 /// Width of a vertical axis \[pt\].
@@ -63,7 +65,8 @@ pub trait FigureWords {
     }
 }
 
-/// A figure, and what is needed to work with it on the screen. Each of its plots has one panel.
+/// A figure, and what is needed to work with it on the screen. The panels of a plot stand above one another; what can be pointed at stands
+/// in the first.
 pub struct FigureScene<'a> {
     /// Tells its widgets from those of other figures.
     pub name: &'static str,
@@ -104,6 +107,10 @@ pub enum FigureEvent {
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
+    /// Where on the axes the dot is that the pointer means.
+    pointed_at: Option<[f64; 2]>,
+    /// What the plots are of, as far as that was said.
+    subject: String,
     plots: Vec<PlotView>,
     questions: Questions,
 }
@@ -117,12 +124,27 @@ struct PlotView {
     /// The panel, the part of the screen and the ranges that the shapes are for: placing labels costs more than drawing them.
     drawn_for: Option<(Panel, Area, [Range; 2])>,
     shapes: Vec<Shape>,
+    /// The same of its other panels, from above.
+    lower: Vec<PlotView>,
 }
 
 impl FigureView {
     /// Shows all of the plots at the next frame.
     pub fn request_fit(&mut self) {
         self.plots.iter_mut().for_each(|plot| plot.ranges = None);
+    }
+
+    /// Says what the plots are of: all of them is shown where it is something else than before.
+    pub fn is_of(&mut self, subject: &str) {
+        if self.subject != subject {
+            subject.clone_into(&mut self.subject);
+            self.request_fit();
+        }
+    }
+
+    /// Where on the axes of its plot the dot is that the pointer means.
+    pub fn pointed_at(&self) -> Option<[f64; 2]> {
+        self.pointed_at
     }
 
     /// What was in view of a plot when it was drawn last.
@@ -190,17 +212,19 @@ pub fn figure_within_ui(
             upright_label_ui(ui, rect, label, palette);
         }
         let hovered = view.hovered.take();
+        view.pointed_at = None;
         let emphasized = hovered.as_ref().or(scene.highlighted.as_ref());
         tiles_ui(ui, "panels", inner, plots.len(), scene.least, |ui, index, rect| {
             let id = ui.make_persistent_id((scene.name, index));
             let kept = (&mut view.plots[index], emphasized);
-            let (response, pointed) = plot_ui(ui, (id, rect), scene, index, kept, palette);
+            let (response, pointed) = panels_ui(ui, (id, rect), scene, index, kept, palette);
             let (words, index) = (scene.words.0, scene.words.1 + index);
             let questions = pointed.as_ref().map(|(id, _)| words.questions(index, id)).unwrap_or_default();
             events.extend(view.questions.ui(&response, &questions).map(FigureEvent::Asked));
             let Some((id, at)) = pointed else { return };
             tooltip_ui(&response, |ui| words.pointed_ui(ui, index, &id, at));
             view.hovered = Some(id.clone());
+            view.pointed_at = Some(at);
             events.push(FigureEvent::Pointed(id.clone()));
             if response.clicked() {
                 events.push(FigureEvent::Clicked(index, id, ui.input(|input| input.modifiers)));
@@ -228,8 +252,9 @@ fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
     ui.painter().add(text.with_angle(-std::f32::consts::FRAC_PI_2));
 }
 
-/// Draws a plot into `rect`; what the pointer means in it, and where that is on its axes.
-fn plot_ui(
+/// Draws the panels of a plot above one another into `rect`, over the same part of their horizontal axis; what the pointer means in the first,
+/// and where that is on its axes.
+fn panels_ui(
     ui: &mut Ui,
     (id, rect): (Id, Rect),
     scene: &FigureScene<'_>,
@@ -237,22 +262,55 @@ fn plot_ui(
     (kept, emphasized): (&mut PlotView, Option<&MarkId>),
     palette: &Palette,
 ) -> (Response, Option<(MarkId, [f64; 2])>) {
+    let panels = &scene.figure.plots[index].panels;
+    let all: f64 = panels.iter().map(|panel| panel.weight).sum();
+    let height = |panel: &Panel| (rect.height() - TITLE_HEIGHT) * (panel.weight / all) as f32;
+    let mut place = rect.with_max_y(rect.top() + TITLE_HEIGHT + height(&panels[0]));
+    let shown = plot_ui(ui, (id, place), scene, (index, 0), (kept, emphasized), palette);
+    let mut lower = std::mem::take(&mut kept.lower);
+    lower.resize_with(panels.len() - 1, PlotView::default);
+    let of_y = |view: &PlotView, panel: &Panel| view.ranges.map_or_else(|| panel.shown(Along::Y), |[_, y]| y);
+    for (number, (panel, below)) in (1..).zip(panels[1..].iter().zip(&mut lower)) {
+        below.ranges = kept.ranges.map(|[x, _]| [x, of_y(below, panel)]);
+        place = Rect::from_x_y_ranges(place.x_range(), place.bottom()..=place.bottom() + height(panel));
+        plot_ui(ui, (id.with(number), place), scene, (index, number), (below, emphasized), palette);
+        kept.ranges = below.ranges.map(|[x, _]| [x, of_y(kept, &panels[0])]);
+    }
+    kept.lower = lower;
+    shown
+}
+
+/// Draws a panel of a plot into `rect`; what the pointer means in it, and where that is on its axes.
+fn plot_ui(
+    ui: &mut Ui,
+    (id, rect): (Id, Rect),
+    scene: &FigureScene<'_>,
+    (index, panel_number): (usize, usize),
+    (kept, emphasized): (&mut PlotView, Option<&MarkId>),
+    palette: &Palette,
+) -> (Response, Option<(MarkId, [f64; 2])>) {
     let Plot { title, panels } = &scene.figure.plots[index];
-    let (panel, words, number) = (&panels[0], scene.words.0, scene.words.1 + index);
-    let mut plot_rect = Rect::from_min_max(rect.min + vec2(0.0, TITLE_HEIGHT), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let (panel, words, number) = (&panels[panel_number], scene.words.0, scene.words.1 + index);
+    let is_first = panel_number == 0;
+    let above = if is_first { TITLE_HEIGHT } else { PANEL_GAP };
+    let mut plot_rect = Rect::from_min_max(rect.min + vec2(0.0, above), rect.max - vec2(RIGHT_MARGIN, 0.0));
     let has_values = !scene.is_compact || rect.left() - ui.max_rect().left() < 0.5 * rect.width();
     if scene.is_compact && has_values {
         plot_rect.min.x -= VALUE_AXIS_WIDTH;
     }
     let [x, y] = kept.ranges.unwrap_or_else(|| [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)]);
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
-        frame(ui, (id, plot_rect.size()), panel, (scene, has_values), palette).show(ui, |plot| {
+        let is_last = panel_number + 1 == panels.len();
+        frame(ui, (id, plot_rect.size()), (panel, is_last), (scene, has_values), palette).show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
         })
     });
     let (response, transform) = (shown.inner.response, shown.inner.transform);
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, words.plot(number)));
-    title_ui(ui, (title, panel), *transform.frame(), scene, index, palette);
+    let told = if is_first { words.plot(number) } else { format!("{}: {}", words.plot(number), panel.y.label) };
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &told));
+    if is_first {
+        title_ui(ui, (title, panel), *transform.frame(), scene, index, palette);
+    }
     kept.transform = Some(transform);
     let pointer = response.hover_pos().or(response.interact_pointer_pos().filter(|_| response.clicked()));
     let pointed = pointer.and_then(|pointer| match scene.columns {
@@ -411,7 +469,7 @@ fn values(panel: &Panel, places: Range) -> Range {
 fn frame<'a>(
     ui: &Ui,
     (id, size): (Id, Vec2),
-    panel: &Panel,
+    (panel, is_last): (&Panel, bool),
     (scene, has_values): (&FigureScene<'_>, bool),
     palette: &Palette,
 ) -> Frame<'a> {
@@ -428,7 +486,8 @@ fn frame<'a>(
         true => named_marks(&input, count, widest),
         false => along.marks(input.bounds, input.base_step_size),
     };
-    let (words, height) = if scene.is_compact { ("", TICKS_HEIGHT) } else { (panel.x.label.as_str(), LABELLED_HEIGHT) };
+    let is_labelled = is_last && !scene.is_compact;
+    let (words, height) = if is_labelled { (panel.x.label.as_str(), LABELLED_HEIGHT) } else { ("", TICKS_HEIGHT) };
     let across = axis_hints(Side::X, words, height, palette, along);
     let across = match is_named {
         true => across.formatter(move |mark, _: &RangeInclusive<f64>| {

@@ -198,6 +198,7 @@ pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
         phase_error: curves.phase_error,
         turns: curves.turns.clone(),
         shows_muad: curves.shows_muad,
+        crossings: curves.crossings.clone(),
         zeros_of: display.show_zeros.then_some(display.pair),
         hidden: curves.hidden_roles.clone(),
         hidden_models: curves.hidden_models.clone(),

@@ -3,17 +3,15 @@
 
 use std::sync::Arc;
 
-use egui::{Button, CollapsingHeader, Grid, Label, Panel, ScrollArea, Ui, Vec2, vec2};
-use gdcm_core::requirements::{TestInput, TestInputShape, ToleranceTable};
-use gdcm_core::study::{
-    Analysis, Edit, HistoryRecord, RecordHistory, RecordHistoryJob, RequirementSettings, TestAnswersJob,
-};
+use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use gdcm_core::requirements::{TestInput, TestInputShape};
+use gdcm_core::study::{Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend};
 use gdcm_core::units::number;
 use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
 
-use super::{Need, RequirementsPage, View};
-use crate::view::command::{Command, RequirementTable};
-use crate::view::controls::{button_ui, number_entry_ui, restore_panel_size};
+use super::{Need, RequirementsPage, View, decided, tolerances_ui};
+use crate::view::command::Command;
+use crate::view::controls::{number_entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
@@ -24,6 +22,8 @@ use crate::view::table_view::{TableLook, table_grid_ui};
 
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
+/// The same of a record with the difference from flight below it \[pt\].
+const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
 /// Part of the height that the table has at first.
 const TABLE_PART: f32 = 0.32;
 
@@ -72,6 +72,8 @@ pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
 /// What is flown, or the test, and the answers of the models.
 pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     subject_ui(ui, state, palette, commands);
+    let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
+    title.show(ui, |ui| tolerances_ui(ui, state, palette, commands));
     let found = match over_time(state) {
         Some(Ok(found)) => found,
         Some(Err(why)) => return drop(ui.label(palette.small_warning(why))),
@@ -81,12 +83,13 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         restore_panel_size(ui, "tolerances");
         let size = TABLE_PART * ui.available_height();
         let panel = Panel::bottom("tolerances").resizable(true).default_size(size).min_size(60.0);
-        panel.show(ui, |ui| tolerances_ui(ui, state, history, palette, commands));
+        panel.show(ui, |ui| shares_ui(ui, state, history, palette, commands));
     }
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
     figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    view.is_of(&figure.title);
     let accented = match &found {
         OverTime::Test(_) => Some(1 + state.display.pair.output),
         OverTime::Record(..) => None,
@@ -100,7 +103,7 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         zooms: true,
         is_compact: false,
         accented,
-        least: LEAST_PLOT,
+        least: if matches!(found, OverTime::Test(_)) { LEAST_PLOT } else { LEAST_RECORD },
         message: "There is nothing to show",
         words: (&HistoryWords { figure: &figure }, 0),
     };
@@ -135,76 +138,22 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     }
 }
 
-/// Share of time inside and largest excess of every quantity and model; and the table of tolerances, to be edited.
-fn tolerances_ui(
-    ui: &mut Ui,
-    state: &mut State,
-    history: &RecordHistory,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
+/// Share of time inside and largest excess of every quantity and model.
+fn shares_ui(ui: &mut Ui, state: &mut State, history: &RecordHistory, palette: &Palette, commands: &mut Vec<Command>) {
     let table = history.table();
     let is_outside = |row: usize| table.rows[row][5] != "none";
     let color = |row: usize, column: usize| match column {
         4 | 5 => Some(if is_outside(row) { palette.warning } else { palette.good }),
+        7 if table.rows[row][7] == Trend::Opposite.name() => Some(palette.warning),
         _ => None,
     };
     let look = TableLook { color: &color, selected: &|_| false };
     ScrollArea::vertical().id_salt("tolerances").auto_shrink(false).show(ui, |ui| {
-        let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
-        title.show(ui, |ui| edited_tolerances_ui(ui, state, palette, commands));
         ui.label(palette.small(&table.title));
         let mut sorting = state.display.requirements_sorting;
-        table_grid_ui(ui, &table, &mut sorting, &look, palette, commands);
+        table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
         state.display.requirements_sorting = sorting;
     });
-}
-
-/// Every row of the table of tolerances, in fields.
-fn edited_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let table = &state.study.requirements.tolerances;
-    let decided = |tolerances: ToleranceTable| {
-        let settings = RequirementSettings { tolerances, ..RequirementSettings::clone(&state.study.requirements) };
-        Command::from(Edit::SetRequirements("tolerances", Arc::new(settings)))
-    };
-    ui.horizontal_wrapped(|ui| {
-        ui.label(palette.small(format!("Source: {}", table.source())));
-        let is_default = *table == ToleranceTable::default();
-        if ui.add_enabled(!is_default, Button::new("Default tolerances").small()).clicked() {
-            commands.push(decided(ToleranceTable::default()));
-        }
-        let hint = "Take the tolerances of a file into the study";
-        let ask = Command::AskRequirementTable(RequirementTable::Tolerances);
-        button_ui(ui, Button::new("Open tolerances…").small(), hint, ask, commands);
-        let hint = "Write them to a file of their own, for other studies";
-        button_ui(ui, Button::new("Save tolerances…").small(), hint, Command::AskWriteTolerances, commands);
-    });
-    let mut rows = table.rows().to_vec();
-    let mut is_changed = false;
-    Grid::new("tolerances in fields").num_columns(5).show(ui, |ui| {
-        for (index, row) in rows.iter_mut().enumerate() {
-            let number_of = index + 1;
-            ui.label(palette.small(format!("{} of {}", row.quantity, row.channel)));
-            let name = format!("Absolute tolerance {number_of}");
-            if let Some(Some(value)) = number_entry_ui(ui, &name, &number(row.absolute), "", 56.0, commands) {
-                (row.absolute, is_changed) = (value, true);
-            }
-            ui.label(palette.small(&row.unit));
-            let name = format!("Relative tolerance {number_of}");
-            let percent = row.relative.map_or_else(String::new, |part| number(100.0 * part));
-            if let Some(value) = number_entry_ui(ui, &name, &percent, "none", 56.0, commands) {
-                (row.relative, is_changed) = (value.map(|percent| 0.01 * percent), true);
-            }
-            ui.label(palette.small(format!("% of the change · {}", row.entry)));
-            ui.end_row();
-        }
-    });
-    if is_changed {
-        commands.push(match ToleranceTable::new("edited", rows) {
-            Ok(table) => decided(table),
-            Err(why) => Command::Refuse(why.to_string()),
-        });
-    }
 }
 
 /// Course, size and duration of the test input.
@@ -212,10 +161,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.pair.input];
     let decide = |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
-        Ok(test) => {
-            let settings = RequirementSettings { test, ..RequirementSettings::clone(&state.study.requirements) };
-            commands.push(Edit::SetRequirements(what, Arc::new(settings)).into());
-        }
+        Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
         Err(why) => commands.push(Command::Refuse(why.to_string())),
     };
     ui.horizontal_wrapped(|ui| {

@@ -27,6 +27,7 @@ mod leads;
 mod net_gain;
 mod overview;
 mod poles;
+mod requirement_limits;
 mod requirements;
 
 pub use across::*;
@@ -43,6 +44,7 @@ pub use leads::*;
 pub use net_gain::*;
 pub use overview::*;
 pub use poles::*;
+pub use requirement_limits::*;
 pub use requirements::*;
 
 /// One of the plots between the side panels.

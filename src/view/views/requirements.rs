@@ -3,16 +3,17 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Button, Color32, Label, Panel, Ui, Vec2, vec2};
+use egui::{Button, CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
 use gdcm_core::study::{
-    Edit, HistoryRecords, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table, TimeHistoriesJob,
+    Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table,
+    TimeHistoriesJob,
 };
 use gdcm_core::units::{s_to_ms, telling};
-use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs};
+use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs, bandwidth_place};
 
-use super::{Need, View, histories_ui, over_time_need};
+use super::{Need, View, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
 use crate::view::CurveCommand;
 use crate::view::command::{Command, RequirementTable};
 use crate::view::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
@@ -21,7 +22,7 @@ use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::records::ConditionRecords;
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_ui};
+use crate::view::table_view::{TableClick, TableLook, table_grid_ui};
 
 /// What stands over every page.
 pub(super) const NO_QUALIFICATION: &str =
@@ -41,7 +42,7 @@ pub enum RequirementsPage {
     Histories,
     /// Modes of the condition shown.
     Modes,
-    /// Mean J and shares of the band of every condition and model.
+    /// The corrected model of every condition against the identified one; mean J and shares of the band of every condition and model.
     Summary,
 }
 
@@ -52,7 +53,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
         (
             RequirementsPage::Summary,
             "summary",
-            "Mean J, shares of the band inside the MUAD envelopes, errors over time",
+            "Corrected against identified in every condition; mean J, shares inside the MUAD envelopes, errors over time",
         ),
         (RequirementsPage::Modes, "modes", "Modes of the condition, against their tolerances"),
         (RequirementsPage::Histories, "in time", "Flight records within tolerances, or answers to a step or a doublet"),
@@ -71,7 +72,14 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
         analysis,
         uncertainty: state.uncertainty().cloned(),
         settings: Arc::clone(&state.study.requirements),
+        known: known_poles(state),
     })
+}
+
+/// The poles of what was identified in this session, condition by condition.
+pub fn known_poles(state: &State) -> KnownPoles {
+    let found = |(id, records): (&ConditionId, &ConditionRecords)| Some((*id, records.identification()?.poles.clone()));
+    state.records.conditions.iter().filter_map(found).collect()
 }
 
 /// What the page that is chosen has to have computed.
@@ -112,14 +120,23 @@ pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, c
         return drop(ui.label(palette.dim(state.results.absence())));
     };
     known_ui(ui, &requirements, palette);
-    if state.display.requirements_page != RequirementsPage::Bandwidth {
-        return requirements_table_ui(ui, state, &requirements, palette, commands);
+    match state.display.requirements_page {
+        RequirementsPage::Bandwidth => asked_ui(ui, state, palette, commands),
+        RequirementsPage::Modes => {
+            let title = CollapsingHeader::new("Tolerances of modes").id_salt("edited tolerances of modes");
+            title.show(ui, |ui| mode_tolerances_ui(ui, state, palette, commands));
+            return requirements_tables_ui(ui, state, &requirements, palette, commands);
+        }
+        RequirementsPage::Histories | RequirementsPage::Summary => {
+            let title = CollapsingHeader::new("Limits of the overview").id_salt("edited limits of the overview");
+            title.show(ui, |ui| overview_limits_ui(ui, state, palette, commands));
+            return requirements_tables_ui(ui, state, &requirements, palette, commands);
+        }
     }
-    asked_ui(ui, state, palette, commands);
     restore_panel_size(ui, "requirements");
     let size = TABLE_PART * ui.available_height();
     let panel = Panel::bottom("requirements").resizable(true).default_size(size).min_size(60.0);
-    panel.show(ui, |ui| requirements_table_ui(ui, state, &requirements, palette, commands));
+    panel.show(ui, |ui| requirements_tables_ui(ui, state, &requirements, palette, commands));
     plots_ui(ui, state, &requirements, palette, commands);
 }
 
@@ -127,9 +144,8 @@ pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, c
 fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     for missing in &requirements.missing {
         let condition = missing.condition.map_or_else(String::new, |id| format!("Condition {id}: "));
-        ui.add(
-            Label::new(palette.small_warning(format!("{condition}no {}: {}", missing.what, missing.why))).truncate(),
-        );
+        let words = format!("{condition}no {}: {}", missing.what, missing.why);
+        ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
     }
     for caution in &requirements.cautions {
         let words = format!("⚠ Condition {}: {}", caution.condition, caution.text);
@@ -137,14 +153,17 @@ fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     }
 }
 
+/// The command that changes what requirements are asked with.
+pub(super) fn decided(state: &State, what: &'static str, change: impl FnOnce(&mut RequirementSettings)) -> Command {
+    let mut settings = RequirementSettings::clone(&state.study.requirements);
+    change(&mut settings);
+    Edit::SetRequirements(what, Arc::new(settings)).into()
+}
+
 /// What bandwidths are asked with: which sticks command an attitude, and the engineer's levels.
 fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let settings = &state.study.requirements;
-    let decided = |what: &'static str, change: &dyn Fn(&mut RequirementSettings)| {
-        let mut changed = RequirementSettings::clone(settings);
-        change(&mut changed);
-        Command::from(Edit::SetRequirements(what, Arc::new(changed)))
-    };
+    let decided = |what, change: &dyn Fn(&mut RequirementSettings)| decided(state, what, change);
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("attitude command:"));
         let outputs = state.dataset().measuring_pairs().marked().map(|pair| pair.output).collect::<BTreeSet<_>>();
@@ -206,16 +225,26 @@ fn plots_ui(
         if let FigureEvent::Clicked(plot, MarkId::Condition(id), _) = event
             && let Some(pair) = pairs.get(plot)
         {
-            commands.extend(marked_in_bode(requirements, *pair, id));
+            let role = view.pointed_at().and_then(|at| role_at(requirements, (*pair, id), at));
+            commands.extend(marked_in_bode(requirements, (*pair, id), role.unwrap_or(RequirementRole::Corrected)));
         }
     }
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// The response in focus in Bode, with the frequencies marked that its bandwidth and phase delay are read at.
-fn marked_in_bode(requirements: &Requirements, pair: Pair, id: ConditionId) -> Vec<Command> {
+/// The model whose mark stands at a place of a plot.
+fn role_at(requirements: &Requirements, (pair, id): (Pair, ConditionId), at: [f64; 2]) -> Option<RequirementRole> {
+    let is_at = |role: &RequirementRole| {
+        requirements.bandwidth_of(id, pair, *role).and_then(bandwidth_place).is_some_and(|place| place == at)
+    };
+    // Of marks at the same place the one on top.
+    RequirementRole::ALL.into_iter().rev().find(is_at)
+}
+
+/// The response in focus in Bode, with the frequencies marked that bandwidth and phase delay of a model are read at.
+fn marked_in_bode(requirements: &Requirements, (pair, id): (Pair, ConditionId), role: RequirementRole) -> Vec<Command> {
     let mut commands = vec![Command::SelectCondition(id), Command::FocusPair(pair), CurveCommand::UnpinCursors.into()];
-    if let Some(of) = requirements.bandwidth_of(id, pair, RequirementRole::Corrected) {
+    if let Some(of) = requirements.bandwidth_of(id, pair, role) {
         let crossings =
             [("ω_phase", of.omega_phase_rad_s), ("ω_gain", of.omega_gain_rad_s), ("ω180", of.omega_180_rad_s)];
         let known = crossings.into_iter().filter_map(|(name, omega)| Some((name, omega?)));
@@ -225,7 +254,74 @@ fn marked_in_bode(requirements: &Requirements, pair: Pair, id: ConditionId) -> V
     commands
 }
 
-fn requirements_table_ui(
+/// A table of the page shown, and how its cells are coloured.
+struct ShownTable<'a> {
+    table: Table,
+    color: Box<dyn Fn(usize, usize) -> CellLook + 'a>,
+}
+
+/// How a cell looks.
+#[derive(Clone, Copy, PartialEq)]
+enum CellLook {
+    Usual,
+    /// Beyond a limit.
+    Outside,
+    /// Within a limit.
+    Within,
+    /// Not to be relied on.
+    Dim,
+}
+
+impl CellLook {
+    fn color(self, palette: &Palette) -> Option<Color32> {
+        match self {
+            Self::Usual => None,
+            Self::Outside => Some(palette.warning),
+            Self::Within => Some(palette.good),
+            Self::Dim => Some(palette.dim_text),
+        }
+    }
+}
+
+/// The tables of the page that is shown.
+fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTable<'a>> {
+    let dataset = state.dataset();
+    match state.display.requirements_page {
+        RequirementsPage::Bandwidth => {
+            let table = requirements.bandwidth_table(dataset);
+            vec![ShownTable { table, color: Box::new(|row, column| bandwidth_look(requirements, (row, column))) }]
+        }
+        RequirementsPage::Modes => {
+            let table = requirements.mode_table(state.condition().id());
+            let of_table = table.clone();
+            vec![ShownTable { table, color: Box::new(move |row, column| mode_look(&of_table, (row, column))) }]
+        }
+        RequirementsPage::Histories | RequirementsPage::Summary => {
+            let histories = state.time_histories().filter(|_| time_histories_job(state).is_some()).map(Arc::as_ref);
+            let overview = requirements.overview(dataset, histories, &state.study.requirements.overview);
+            let is_outside = {
+                let overview = overview.clone();
+                move |row, column| if overview.is_outside(row, column) { CellLook::Outside } else { CellLook::Usual }
+            };
+            let table = requirements.summary_table(histories);
+            let of_table = table.clone();
+            let of_summary = move |row, column| summary_look(requirements, &of_table, (row, column));
+            vec![
+                ShownTable { table: overview.table, color: Box::new(is_outside) },
+                ShownTable { table, color: Box::new(of_summary) },
+            ]
+        }
+    }
+}
+
+/// The tables of the page that is shown where it has no figure; none where it has one, or nothing is known yet.
+pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
+    let is_table = matches!(state.display.requirements_page, RequirementsPage::Modes | RequirementsPage::Summary);
+    let requirements = state.requirements().filter(|_| is_table)?;
+    Some(page_tables(state, requirements).into_iter().map(|shown| shown.table).collect())
+}
+
+fn requirements_tables_ui(
     ui: &mut Ui,
     state: &mut State,
     requirements: &Requirements,
@@ -233,83 +329,78 @@ fn requirements_table_ui(
     commands: &mut Vec<Command>,
 ) {
     let id = state.condition().id();
-    let (table, color) = match state.display.requirements_page {
-        RequirementsPage::Bandwidth => (requirements.bandwidth_table(state.dataset()), CellColor::None),
-        RequirementsPage::Modes => (requirements.mode_table(id), CellColor::Modes),
-        RequirementsPage::Histories | RequirementsPage::Summary => {
-            let histories = state.time_histories().filter(|_| time_histories_job(state).is_some());
-            (requirements.summary_table(histories.map(Arc::as_ref)), CellColor::Summary)
-        }
-    };
-    ui.add(Label::new(palette.small(&table.title)).truncate());
-    if table.rows.is_empty() {
-        return drop(ui.label(palette.dim("Nothing: one of the two models has no matrices, or was not analysed.")));
-    }
-    let color = |row: usize, column: usize| color.of(requirements, &table, (row, column), palette);
-    let selected = |row: usize| table.columns[0] == "condition" && table.rows[row][0] == id.to_string();
-    let look = TableLook { color: &color, selected: &selected };
     let mut sorting = state.display.requirements_sorting;
-    if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands) {
-        commands.extend(went_to(state, requirements, (&table, click.row)));
-    }
+    ScrollArea::both().id_salt("requirement tables").auto_shrink(false).show(ui, |ui| {
+        for (ShownTable { table, color }, sorting) in page_tables(state, requirements).into_iter().zip(&mut sorting) {
+            ui.add(Label::new(palette.small(&table.title)).extend());
+            if table.rows.is_empty() {
+                let page = state.display.requirements_page;
+                let why = requirements.no_modes(id).filter(|_| page == RequirementsPage::Modes);
+                ui.label(palette.dim(why.unwrap_or("Nothing: no condition has a result.")));
+                continue;
+            }
+            let color = |row: usize, column: usize| color(row, column).color(palette);
+            let selected = |row: usize| table.columns[0] == "condition" && table.rows[row][0] == id.to_string();
+            let look = TableLook { color: &color, selected: &selected };
+            if let Some(click) = table_grid_ui(ui, &table, sorting, &look, palette, commands) {
+                commands.extend(went_to(state, requirements, (&table, click)));
+            }
+            ui.add_space(8.0);
+        }
+    });
     state.display.requirements_sorting = sorting;
 }
 
 /// Where a click on a row goes.
-fn went_to(state: &State, requirements: &Requirements, (table, row): (&Table, usize)) -> Vec<Command> {
+fn went_to(state: &State, requirements: &Requirements, (table, click): (&Table, TableClick)) -> Vec<Command> {
+    let TableClick { row, column } = click;
     match state.display.requirements_page {
         RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
-            of.map(|of| marked_in_bode(requirements, of.pair, of.condition)).unwrap_or_default()
+            of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role)).unwrap_or_default()
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
-            let id = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
+            // Conditions are columns of the overview and rows of the other table.
+            let of_row = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
+            let id = of_row.or_else(|| table.columns[column].parse().ok());
             id.map(|id| Command::SelectCondition(ConditionId(id))).into_iter().collect()
         }
         RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
     }
 }
 
-/// How the cells of a table are coloured.
-#[derive(Clone, Copy)]
-enum CellColor {
-    None,
-    /// Beyond the tolerance: warning; within it: good.
-    Modes,
-    /// Mean J above 100, the limit of what is acceptable (M4): warning.
-    Summary,
+/// What rests on the model above the band is grey.
+fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> CellLook {
+    let names = ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
+    let name = column.checked_sub(4).and_then(|at| names.get(at));
+    let rests = name.zip(requirements.bandwidth.get(row)).is_some_and(|(name, of)| of.rests_above(name));
+    if rests { CellLook::Dim } else { CellLook::Usual }
 }
 
-impl CellColor {
-    fn of(
-        self,
-        requirements: &Requirements,
-        table: &Table,
-        (row, column): (usize, usize),
-        palette: &Palette,
-    ) -> Option<Color32> {
-        let heading = table.columns[column].as_str();
-        match self {
-            Self::None => {
-                let of = requirements.bandwidth.get(row)?;
-                let name =
-                    ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
-                let rests = |name: &&&str| of.rests_above(name);
-                name.get(column.checked_sub(4)?).filter(rests).map(|_| palette.dim_text)
-            }
-            Self::Modes if heading.ends_with(": tolerance") => {
-                let cell = &table.rows[row][column];
-                let is = |verdict: ModeVerdict| cell.starts_with(verdict.words());
-                let color = if is(ModeVerdict::Within) { palette.good } else { palette.dim_text };
-                Some(if is(ModeVerdict::Outside) { palette.warning } else { color })
-            }
-            Self::Summary if heading.starts_with('J') => {
-                let of = requirements.summary_of(&table.rows[row])?;
-                let cost = if heading == "J on-axis" { of.mean_j_on_axis } else { of.mean_j_all };
-                cost.map(|cost| if cost > ACCEPTABLE { palette.warning } else { palette.good })
-            }
-            _ => None,
-        }
+fn mode_look(table: &Table, (row, column): (usize, usize)) -> CellLook {
+    if !table.columns[column].ends_with(": tolerance") {
+        return CellLook::Usual;
+    }
+    let is = |verdict: ModeVerdict| table.rows[row][column].starts_with(verdict.words());
+    match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
+        (true, _) => CellLook::Within,
+        (_, true) => CellLook::Outside,
+        _ => CellLook::Dim,
+    }
+}
+
+/// Mean J beyond what is acceptable; of the rms error nothing says what is.
+fn summary_look(requirements: &Requirements, table: &Table, (row, column): (usize, usize)) -> CellLook {
+    let of = requirements.summary_of(&table.rows[row]);
+    let cost = match table.columns[column].as_str() {
+        "J on-axis" => of.and_then(|of| of.mean_j_on_axis),
+        "J of all" => of.and_then(|of| of.mean_j_all),
+        _ => None,
+    };
+    match cost {
+        None => CellLook::Usual,
+        Some(cost) if cost > ACCEPTABLE => CellLook::Outside,
+        Some(_) => CellLook::Within,
     }
 }
 

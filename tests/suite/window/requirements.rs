@@ -1,10 +1,12 @@
 //! The questions of a qualification by hand (M17).
 
+use std::sync::Arc;
+
 use gdcm::view::arrangement::View;
 use gdcm::view::views::RequirementsPage;
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::requirements::RecordCheck;
-use gdcm_core::study::{RecordHistory, RequirementRole};
+use gdcm_core::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
+use gdcm_core::study::{BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -55,8 +57,45 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     assert_eq!(state(&window).display.pair, first.pair);
     let marked: Vec<Option<f64>> =
         state(&window).display.curves.crossings.iter().map(|(_, omega)| Some(*omega)).collect();
-    let read_at = requirements.bandwidth_of(first.condition, first.pair, RequirementRole::Corrected).unwrap();
-    assert_eq!(marked, [read_at.omega_phase_rad_s, read_at.omega_gain_rad_s, read_at.omega_180_rad_s]);
+    assert_ne!(first.role, RequirementRole::Corrected);
+    assert_eq!(marked, [first.omega_phase_rad_s, first.omega_gain_rad_s, first.omega_180_rad_s], "of the row's model");
+    let figure = gdcm::view::figure_of(state(&window), View::Bode).unwrap();
+    let words = format!("{figure:?}");
+    assert!(words.contains("ω_phase") && words.contains("ω180"), "on paper too");
+}
+
+#[test]
+fn a_click_on_a_mark_is_of_that_model() {
+    let mut window = window();
+    show(&mut window, View::Requirements);
+    let requirements = shown_requirements(&mut window);
+    let p_lat = pair(&window, "P", "LAT");
+    let role = RequirementRole::Physics;
+    let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
+    // The one that lies farthest from all other marks: nothing hides it.
+    let places = |of: &BandwidthFinding| gdcm_files::figure::bandwidth_place(of);
+    let apart = |of: &BandwidthFinding| -> f64 {
+        let Some([x, y]) = places(of) else { return -1.0 };
+        let others = requirements.bandwidth.iter().filter(|other| other.pair == p_lat && !std::ptr::eq(*other, of));
+        let distance = |[a, b]: [f64; 2]| ((a - x) / 2.0).hypot((b - y) / 100.0);
+        others.filter_map(places).map(distance).fold(f64::INFINITY, f64::min)
+    };
+    let meant = requirements.bandwidth.iter().filter(of_role).max_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
+    let plot = gdcm_files::figure::bandwidth_pairs(&requirements).iter().position(|of| *of == p_lat).unwrap();
+    let at = state(&window).display.figures[&View::Requirements].position(plot, places(meant).unwrap()).unwrap();
+    window.hover_at(at);
+    window.run_steps(2);
+    window.drag_at(at);
+    window.drop_at(at);
+    window.run_steps(4);
+    assert_eq!(state(&window).condition().id(), meant.condition);
+    let crossings = &state(&window).display.curves.crossings;
+    let expected = [meant.omega_phase_rad_s, meant.omega_gain_rad_s, meant.omega_180_rad_s].map(Option::unwrap);
+    assert_eq!(crossings.len(), 3, "{crossings:?}");
+    for ((name, omega), expected) in crossings.iter().zip(expected) {
+        // Roots are found to a relative 1e-12 each time that the answer is computed anew.
+        assert!((omega / expected - 1.0).abs() < 1e-11, "{name}: {omega} {expected}");
+    }
 }
 
 fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_core::study::Requirements> {
@@ -182,4 +221,123 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let of_flight = table.rows.iter().find(|row| row[..3] == ["10", "60", "identified"].map(str::to_owned)).unwrap();
     assert_eq!(of_flight[7], format!("{:.2}", rms(RequirementRole::Identified)));
     assert!(texts(&window).contains("J_rms") && texts(&window).contains("Theil P"));
+    // The overview has them too, and its limits are decided, undone and drawn.
+    let overview = |window: &Window| {
+        let limits = &state(window).study.requirements.overview;
+        state(window).requirements().unwrap().overview(state(window).dataset(), Some(&found), limits)
+    };
+    let usual = overview(&window);
+    let pitch = usual.table.rows.iter().position(|row| row[0] == "pitch rate inside").unwrap();
+    let column = usual.table.columns.iter().position(|of| of == "10").unwrap();
+    let share = found.share_inside(ConditionId(10), RequirementRole::Corrected, "pitch rate").unwrap();
+    assert_eq!(usual.table.rows[pitch][column], format!("{:.1}", (1e3 * share).floor() / 10.0));
+    assert!(texts(&window).contains("pitch rate inside") && texts(&window).contains("≥ 90"));
+    click(&mut window, "Limits of the overview");
+    type_into(&mut window, "Least time inside", "100.5");
+    assert!(overview(&window).is_outside(pitch, column), "nothing is inside for longer than always");
+    type_into(&mut window, "Limit of the bandwidth", "0");
+    let refused = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(refused.contains("expected bandwidth above zero"), "{refused}");
+    give(&mut window, Action::Undo);
+    assert_eq!(overview(&window), usual);
+
+    // What is saved is what is shown: both tables, and as numbers.
+    let folder = tempfile::tempdir().unwrap();
+    let width = gdcm_files::figure::ColumnWidth::Double;
+    let path = folder.path().join("summary.csv");
+    give(&mut window, Action::SaveFigure(View::Requirements, width, path.clone()));
+    let saved = std::fs::read_to_string(path).unwrap();
+    assert!(
+        saved.contains("pitch rate inside,% of time,≥ 90")
+            && saved.contains("J on-axis")
+            && !saved.contains('\u{2212}')
+    );
+    let picture = folder.path().join("summary.svg");
+    give(&mut window, Action::SaveFigure(View::Requirements, width, picture.clone()));
+    let refused = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(refused.contains("ends in .csv") && !picture.exists(), "{refused}");
+}
+
+#[test]
+fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
+    let mut window = window();
+    show(&mut window, View::Requirements);
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    give(&mut window, Action::ShowTest(true));
+    click(&mut window, "Tolerances");
+    type_into(&mut window, "Absolute tolerance 1", "4.5");
+    assert!((state(&window).study.requirements.tolerances.rows()[0].absolute - 4.5).abs() < 1e-12);
+
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Modes));
+    let verdicts = |window: &Window| -> Vec<_> {
+        state(window).requirements().unwrap().modes.iter().map(|of| of.verdict).collect()
+    };
+    let shown = |window: &mut Window| {
+        wait_until(window, "the modes", |window| {
+            let decided = &state(window).study.requirements.mode_tolerances;
+            let found = state(window).results.requirements.as_ref();
+            found.is_some_and(|(job, _)| job.settings.mode_tolerances == *decided)
+        });
+        verdicts(window)
+    };
+    let usual = shown(&mut window);
+    assert!(usual.contains(&ModeVerdict::Outside), "{usual:?}");
+    click(&mut window, "Tolerances of modes");
+    for field in ["Tolerance of the period 2", "Tolerance of the time to half 2", "Tolerance of the damping ratio 2"] {
+        type_into(&mut window, field, "1e4");
+    }
+    for field in ["Tolerance of the period 1", "Tolerance of the time to half 1", "Tolerance of the damping ratio 1"] {
+        type_into(&mut window, field, "1e4");
+    }
+    // What does not oscillate where the flown mode does stays outside, whatever the tolerance.
+    let outside = |of: &[ModeVerdict]| of.iter().filter(|of| **of == ModeVerdict::Outside).count();
+    assert!(outside(&shown(&mut window)) < outside(&usual), "nothing is so far from flight");
+    click(&mut window, "Default tolerances of modes");
+    assert_eq!(shown(&mut window), usual);
+}
+
+#[test]
+fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_last() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Requirements);
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    wait_until(&mut window, "the records", |window| !state(window).records.conditions.is_empty());
+    settle(&mut window);
+    let mut settings = RequirementSettings::clone(&state(&window).study.requirements);
+    let levels = r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
+    settings.levels = serde_json::from_str(levels).unwrap();
+    let mut rows = settings.tolerances.rows().to_vec();
+    rows[0].absolute = 12.375;
+    settings.tolerances = ToleranceTable::new("edited", rows).unwrap();
+    give(&mut window, Edit::SetRequirements("levels", Arc::new(settings)));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("report.html");
+    give(&mut window, Action::WriteReport(path.clone()));
+    wait_until(&mut window, "the report", |_| path.exists());
+    let written = std::fs::read_to_string(&path).unwrap();
+    for words in ["Level 1 of the tests", "12.375", "Records of condition 10", "J_rms over all records of a condition"]
+    {
+        assert!(written.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn a_condition_without_rates_and_records_says_so_in_words() {
+    let desk = crate::commands::Desk::new();
+    desk.write("forces.json", |file| {
+        for output in file["outputs"].as_array_mut().unwrap() {
+            output["unit"] = serde_json::json!("N");
+        }
+    });
+    let opened = load_any(&desk.path("forces.json")).unwrap();
+    let mut window = window_with(opened, Setup::default());
+    show(&mut window, View::Requirements);
+    wait_until(&mut window, "the requirements", |window| state(window).requirements().is_some());
+    let said = texts(&window);
+    assert!(said.contains("No on-axis response is of an angle or its rate"), "{said}");
+    assert!(said.contains("it is neither a rate (deg/s, rad/s) nor an attitude"), "{said}");
+    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    let said = texts(&window);
+    assert!(said.contains("No flight record of this condition is used (view Records)"), "{said}");
 }

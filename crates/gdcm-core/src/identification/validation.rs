@@ -32,6 +32,18 @@ impl ValidationSettings {
     pub fn unfiltered() -> Self {
         Self { longest_window_s: 10.0, low_pass: None }
     }
+
+    /// The same with windows that all of `models` are compared over: the shortest that one of them asks for. A model that has too few samples
+    /// in its own windows is compared with nothing, and shortens none of the others'.
+    #[must_use]
+    pub fn common_to<'m>(self, models: impl IntoIterator<Item = &'m StateSpace>, segments: &[Segment]) -> Self {
+        let own = |model: &StateSpace| {
+            let window_s = window_s(model, self.longest_window_s)?;
+            segments.iter().any(|segment| windows_in(model, segment, window_s).is_some()).then_some(window_s)
+        };
+        let longest_window_s = models.into_iter().filter_map(own).fold(self.longest_window_s, f64::min);
+        Self { longest_window_s, ..self }
+    }
 }
 
 /// A window of a record, measured and simulated.
@@ -142,6 +154,15 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
 }
 
+/// In how many windows a segment is cut; none where they hold too few samples for the initial state of a model.
+fn windows_in(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
+    let (samples, outputs) = segment.outputs.shape();
+    // A millionth of a window is rounding.
+    let count =
+        (samples as f64 * segment.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
+    ((samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs)).then_some(count)
+}
+
 /// The windows of one segment; none where it is too short.
 fn windows(
     model: &StateSpace,
@@ -150,14 +171,9 @@ fn windows(
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
     let held = FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
-    let (samples, outputs) = segment.outputs.shape();
-    // A millionth of a window is rounding.
-    let count =
-        (samples as f64 * segment.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
+    let Some(count) = windows_in(model, segment, window_s) else { return Ok(Vec::new()) };
+    let samples = segment.outputs.nrows();
     let longest = samples.div_ceil(count);
-    if (samples / count) * outputs < OVER_UNKNOWNS * (model.order() + outputs) {
-        return Ok(Vec::new());
-    }
     let free = held.free_responses(longest);
     let window = |k: usize| {
         // The product is taken in 128 bits: it may be large.

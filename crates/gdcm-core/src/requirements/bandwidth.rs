@@ -3,7 +3,7 @@
 //! ```text
 //! 1  Theta = H/(j omega) of a rate, H of an attitude; phase continuous, in (-270, 90] deg at the lowest frequency of the band
 //! 2  omega_180, omega_phase: the lowest omega from the band's lower end on at which it falls through -180, -135 deg;
-//!    where it is below that at the band's lowest frequency, the next one below
+//!    where it is below that at the band's lowest frequency, the next one below the band, and only without one the first within
 //! 3  omega_gain: the greatest omega < omega_180 at which |Theta| = 10^(6/20) |Theta(omega_180)|
 //! 4  omega_BW = min(omega_phase, omega_gain) of a rate response; omega_phase of attitude command
 //! 5  Phi at 400 logarithmic points of omega_180 ... 2 omega_180; its largest departure from the line between its ends
@@ -242,14 +242,14 @@ impl Reading<'_> {
         Ok(Metric { value, deviation, read_at, rests_above_band, rests_below_band: lowest < band.min() })
     }
 
-    /// The lowest frequency at which the phase falls through a level.
+    /// The frequency at which the phase falls through a level: of the band the lowest, unless it has fallen through below and stayed there.
     fn phase_crossing(&self, level_deg: f64) -> Result<Metric, NoMetric> {
         let (omega, phase, level) = (self.attitude.omega(), self.attitude.phase(), level_deg.to_radians());
         let falls = |k: &usize| phase[*k] > level && phase[k + 1] <= level;
         let (first, last) = (self.attitude.lowest_of_band(), phase.len() - 1);
         let is_below = phase[first] <= level;
-        let below = || (0..first).rev().find(falls).filter(|_| is_below);
-        let Some(k) = (first..last).find(falls).or_else(below) else {
+        let below = (0..first).rev().find(|k| is_below && falls(k));
+        let Some(k) = below.or_else(|| (first..last).find(falls)) else {
             return Err(if is_below {
                 NoMetric::BelowFromStart { level_deg, from: omega[first] }
             } else {

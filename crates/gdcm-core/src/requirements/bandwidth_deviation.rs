@@ -4,10 +4,12 @@
 //! ```text
 //! phase crossing:  sd = sd_phase / |d phase / d omega|
 //! gain crossing:   sd^2 = (sd_dB(omega_gain)^2 + sd_dB(omega_180)^2 + (m'(omega_180) sd(omega_180))^2) / m'(omega_gain)^2,  m in dB
-//! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180), of a straight phase
+//! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
-//! Errors at frequencies apart are taken as independent of one another.
+//! Errors at frequencies apart are taken as independent of one another. Those of neighbours are not: a phase delay that is read from the
+//! line of least squares has the deviation of the two ends too, for independent errors all along the line would make it as small as there are
+//! points.
 
 use super::AttitudeResponse;
 use crate::dataset::{ModelBands, Pair};

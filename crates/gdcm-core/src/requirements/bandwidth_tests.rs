@@ -139,6 +139,10 @@ fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
     let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
     let omega_phase = slow.omega_phase.unwrap();
     assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
+    // Also where a lightly damped pair of zeros and poles at some 1.5 rad/s lifts the phase for a while, so that it falls through once more.
+    let lifted = |s: Complex<f64>| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2));
+    let again = value(of_attitude(lifted, &settings(CommandType::Rate)).omega_phase);
+    assert!((again - 0.2).abs() < 1e-3, "{again}: the fall below the band comes first");
 }
 
 #[test]

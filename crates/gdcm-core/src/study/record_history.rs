@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use crate::dataset::ConditionId;
 use crate::executor::Executor;
-use crate::identification::{FlightRecord, Preparation, ValidationSettings, segments_of, validate};
-use crate::requirements::{RecordCheck, Tolerance, ToleranceTable};
+use crate::identification::{FlightRecord, Preparation, Validation, segments_of, validate};
+use crate::requirements::{ChannelTolerance, RecordCheck, Tolerance, ToleranceTable};
 use crate::units::telling;
 
-use super::time_histories::LEAST_PIECE_S;
-use super::{Analysis, Cancelled, HistoryRecord, Job, Progress, RequirementRole, Table};
+use super::time_histories::{Comparer, LEAST_PIECE_S, common_windows};
+use super::time_history_tables::percent;
+use super::{Analysis, Cancelled, HistoryRecord, Job, Progress, RequirementRole, Table, Trend};
 
 /// One quantity of a record: flown, and as each model answers.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +21,9 @@ pub struct QuantityHistory {
     pub output: usize,
     /// Unit of what is compared.
     pub unit: String,
-    /// What each model gives, in windows.
+    /// Whether the output is on-axis to the input that moved most; none where that is not known.
+    pub on_axis: Option<bool>,
+    /// What each model gives, in windows that are the same for all of them.
     pub models: Vec<(RequirementRole, RecordCheck)>,
 }
 
@@ -49,26 +52,37 @@ impl PartialEq for RecordHistory {
 }
 
 impl RecordHistory {
-    /// Share of time inside, the largest excess and when, of each quantity and model.
+    /// Share of time inside, the largest excess and when, of each quantity and model; off the axis, whether the trend is correct.
     pub fn table(&self) -> Table {
-        let columns =
-            ["quantity", "tolerance", "entry", "model", "inside [%]", "largest excess", "at [s]", "correlation"];
+        let columns = [
+            "quantity",
+            "tolerance",
+            "entry",
+            "model",
+            "inside [%]",
+            "largest excess",
+            "at [s]",
+            "off-axis trend",
+            "correlation",
+        ];
         let held_out = if self.held_out { ", held out" } else { "" };
         let mut table = Table::new(format!("{}{held_out}: within tolerances", self.record), columns);
         for of in &self.quantities {
             for (role, check) in &of.models {
                 let worst = check.worst();
                 let beyond = worst.filter(|worst| worst.largest_excess > 0.0);
+                let correlation = check.correlation();
                 table.row([
                     of.tolerance.quantity.clone(),
                     of.tolerance.words(),
                     of.tolerance.entry.clone(),
                     role.name().to_owned(),
-                    telling(100.0 * check.share_inside(), 1),
+                    percent(Some(check.share_inside())),
                     beyond
                         .map_or("none".to_owned(), |worst| format!("{} {}", telling(worst.largest_excess, 2), of.unit)),
                     beyond.map_or(String::new(), |worst| telling(worst.largest_excess_at_s, 1)),
-                    check.correlation().map_or(String::new(), |of| telling(of, 2).replace('-', "\u{2212}")),
+                    Trend::of(correlation, of.on_axis).map_or("", Trend::name).to_owned(),
+                    correlation.map_or(String::new(), |of| telling(of, 2).replace('-', "\u{2212}")),
                 ]);
             }
         }
@@ -107,37 +121,39 @@ impl RecordHistoryJob {
         };
         let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..self.preparation.clone() };
         let segments = segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
-        let mut missing = Vec::new();
-        let mut answers = Vec::new();
+        let (mut missing, mut models) = (Vec::new(), Vec::new());
         for role in RequirementRole::ALL {
-            let model = self.analysis.role_model(result, role).map_err(|error| error.to_string());
-            let answer = model.and_then(|model| {
-                validate(&model, &segments, &ValidationSettings::unfiltered(), executor)
-                    .map_err(|error| error.to_string())
-            });
-            match answer {
-                Ok(validation) => answers.push((role, validation)),
+            match self.analysis.role_model(result, role) {
+                Ok(model) => models.push((role, model)),
                 Err(why) => missing.push(format!("{} model: {why}", role.name())),
             }
         }
-        let mut quantities = Vec::new();
-        for tolerance in self.tolerances.rows() {
-            let of_channel = match tolerance.of_outputs(self.analysis.study.dataset.outputs()) {
-                Ok(of_channel) => of_channel,
-                Err(why) => {
-                    missing.push(why.to_string());
-                    continue;
-                }
-            };
-            let check = |(role, validation): &(RequirementRole, crate::identification::Validation)| {
-                let checks =
-                    RecordCheck::of_windows(&validation.windows, &of_channel).map_err(|error| error.to_string());
-                Some((*role, checks.ok()?.into_iter().next()?))
-            };
-            let models = answers.iter().filter_map(check).collect();
-            let (output, unit) = (of_channel.output, of_channel.unit.clone());
-            quantities.push(QuantityHistory { tolerance: tolerance.clone(), output, unit, models });
+        let settings = common_windows(models.iter().map(|(_, model)| model), &segments);
+        let mut answers = Vec::new();
+        for (role, model) in &models {
+            match validate(model, &segments, &settings, executor) {
+                Ok(validation) => answers.push((*role, validation)),
+                Err(why) => missing.push(format!("{} model: {why}", role.name())),
+            }
         }
+        let mut not_applied = Vec::new();
+        let comparer = Comparer::of(&self.analysis, &self.tolerances, &mut not_applied);
+        missing.extend(not_applied.into_iter().map(|of| of.why));
+        let moved = comparer.moved_input(&segments);
+        let quantity = |(tolerance, of_channel): &(&Tolerance, ChannelTolerance)| {
+            let check = |(role, validation): &(RequirementRole, Validation)| {
+                let checks = RecordCheck::of_windows(&validation.windows, of_channel).ok()?;
+                Some((*role, checks.into_iter().next()?))
+            };
+            QuantityHistory {
+                tolerance: Tolerance::clone(tolerance),
+                output: of_channel.output,
+                unit: of_channel.unit.clone(),
+                on_axis: comparer.is_on_axis(of_channel.output, moved),
+                models: answers.iter().filter_map(check).collect(),
+            }
+        };
+        let quantities = comparer.rows.iter().map(quantity).collect();
         let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
         let flight = Arc::clone(&self.record.flight);
         Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })

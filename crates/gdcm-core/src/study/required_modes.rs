@@ -7,13 +7,30 @@ use serde::Serialize;
 
 use crate::correction::Pade;
 use crate::dataset::{BundleKind, ConditionId, Dynamics, Model};
+use crate::identification::PoleEstimate;
 use crate::requirements::{
-    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeToleranceTable, ModeValues, ModeVerdict, ModelModes, NamedBy,
-    compare_modes,
+    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeValues, ModeVerdict, ModelModes, NamedBy, compare_modes,
 };
 use crate::response::{Mode, modes_of};
 
 use super::AskedCondition;
+
+/// The poles that were identified of conditions, with how sure they are: a dataset does not keep that.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
+
+impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
+    fn from_iter<T: IntoIterator<Item = (ConditionId, Vec<PoleEstimate>)>>(found: T) -> Self {
+        Self(found.into_iter().collect())
+    }
+}
+
+impl KnownPoles {
+    /// Those of a condition; none where nothing was identified of it.
+    fn of(&self, condition: ConditionId) -> &[PoleEstimate] {
+        self.0.get(&condition).map_or(&[], Vec::as_slice)
+    }
+}
 
 /// A mode of one model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -79,6 +96,9 @@ pub struct ModeFinding {
     pub verdict: ModeVerdict,
     /// The mode of the identified representative.
     pub identified: ModeNumbers,
+    /// Standard deviations of its numbers; none where the identification that it is of is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub identified_deviation: Option<ModeValues>,
     /// That of the physics representative in its place; none where it has none.
     pub physics: Option<ModeNumbers>,
     /// What is said of it with the couplings of the study; none without couplings, for gains and delays move no pole.
@@ -96,10 +116,8 @@ pub struct ModeFinding {
 ///
 /// # Errors
 /// Why there are none, in words.
-pub(super) fn mode_findings(
-    asked: &AskedCondition<'_>,
-    tolerances: &ModeToleranceTable,
-) -> Result<Vec<ModeFinding>, String> {
+pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> Result<Vec<ModeFinding>, String> {
+    let tolerances = &asked.analysis.study.requirements.mode_tolerances;
     let representative = |kind: BundleKind| {
         let condition = &asked.result.condition;
         &condition.bundle(kind)[asked.result.representative(kind).model]
@@ -112,8 +130,7 @@ pub(super) fn mode_findings(
         .chain(&of_corrected)
         .map(|modes| ModelModes { modes, states: &physics.states })
         .collect();
-    // A dataset keeps no standard deviations of poles.
-    let rows = compare_modes(flown, &models, &[], asked.analysis.study.settings.band, tolerances);
+    let rows = compare_modes(flown, &models, known.of(asked.id()), asked.analysis.study.settings.band, tolerances);
     let numbers = |row: &ModeRow, of: usize| {
         row.models.get(of).copied().flatten().map(|mode| ModeNumbers::of(&mode, &physics.name))
     };
@@ -125,6 +142,7 @@ pub(super) fn mode_findings(
         named_by: row.named_by,
         verdict: row.verdicts.first().copied().unwrap_or(ModeVerdict::NotPaired),
         identified: ModeNumbers::of(&row.flown, &identified.name),
+        identified_deviation: row.deviation,
         physics: numbers(&row, 0),
         corrected_verdict: row.verdicts.get(1).copied(),
         corrected: numbers(&row, 1),
@@ -147,4 +165,34 @@ fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
         return Err(format!("\"{}\" is a measured response: it has no poles", model.name));
     }
     modes_of(&model.dynamics).map_err(|error| format!("\"{}\": {error}", model.name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::couplings_example_tests::EXAMPLE;
+    use super::super::{Execution, requirements_of};
+    use super::*;
+    use crate::requirements::ModeVerdict;
+
+    #[test]
+    fn a_mode_whose_deviation_is_beyond_the_tolerance_is_not_determined() {
+        let of = |known: &KnownPoles| requirements_of(&EXAMPLE.analysis, known, &Execution::sequential()).unwrap();
+        let unknown = of(&KnownPoles::default());
+        let judged = |mode: &&ModeFinding| matches!(mode.verdict, ModeVerdict::Within | ModeVerdict::Outside);
+        let mode = unknown.modes.iter().find(judged).expect("a Dutch roll within the band");
+        assert_eq!(mode.identified_deviation, None);
+        assert!(unknown.mode_table(mode.condition).title.contains("not known"));
+        let verdict = |sd: f64, moved: f64| {
+            let numbers = &mode.identified;
+            let pole = nalgebra::Complex::new(numbers.pole_real_rad_s * moved, numbers.pole_imaginary_rad_s * moved);
+            let estimate = PoleEstimate { pole, sd_re: sd * pole.norm(), sd_im: sd * pole.norm(), determined: true };
+            let found = of(&KnownPoles::from_iter([(mode.condition, vec![estimate])]));
+            let same =
+                found.modes.iter().find(|of| (of.condition, of.number) == (mode.condition, mode.number)).unwrap();
+            (same.verdict, same.identified_deviation.is_some())
+        };
+        assert_eq!(verdict(1e-3, 1.0), (mode.verdict, true));
+        assert_eq!(verdict(0.4, 1.0), (ModeVerdict::NotDetermined, true));
+        assert_eq!(verdict(0.4, 1.1), (mode.verdict, false), "an estimate of another model says nothing");
+    }
 }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Analysis;
 use crate::dataset::Dataset;
 use crate::requirements::{CommandType, LevelBoundaries, ModeToleranceTable, TestInput, ToleranceTable};
+use crate::units::number;
 
 /// What requirements are asked with; a part that is left out is the default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -25,9 +26,55 @@ pub struct RequirementSettings {
     /// How far a mode may be from the flown one.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
+    /// From where on the overview says that a corrected model is far from the identified one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub overview: OverviewLimits,
     /// What the models answer to where no flight record is shown.
     #[serde(skip_serializing_if = "is_default")]
     pub test: TestInput,
+}
+
+/// From where on the overview of the corrected models says that one is far from the identified one: limits of the program, of no standard.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OverviewLimits {
+    /// Difference of the bandwidth, as a part of the identified one.
+    pub bandwidth: f64,
+    /// Difference of the phase delay \[s\].
+    pub phase_delay_s: f64,
+    /// Least share of time inside a tolerance, 0 to 1.
+    pub share_inside: f64,
+}
+
+impl Default for OverviewLimits {
+    fn default() -> Self {
+        Self { bandwidth: 0.1, phase_delay_s: 0.02, share_inside: 0.9 }
+    }
+}
+
+/// A limit of the overview that is not above zero.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
+pub struct OverviewLimitsError {
+    /// Which.
+    pub name: &'static str,
+    /// What stands there.
+    pub found: f64,
+}
+
+impl OverviewLimits {
+    /// The same, checked.
+    ///
+    /// # Errors
+    /// [`OverviewLimitsError`] where one is not a number above zero.
+    pub fn checked(self) -> Result<Self, OverviewLimitsError> {
+        let Self { bandwidth, phase_delay_s, share_inside } = self;
+        let limits = [("bandwidth", bandwidth), ("phase_delay_s", phase_delay_s), ("share_inside", share_inside)];
+        match limits.into_iter().find(|(_, value)| !value.is_finite() || *value <= 0.0) {
+            Some((name, found)) => Err(OverviewLimitsError { name, found }),
+            None => Ok(self),
+        }
+    }
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -72,6 +119,7 @@ mod tests {
         let settings = RequirementSettings {
             attitude_command: BTreeSet::from(["Q".to_owned()]),
             tolerances: ToleranceTable::new("our own", vec![row]).unwrap(),
+            overview: OverviewLimits { bandwidth: 0.15, ..OverviewLimits::default() },
             test: TestInput { shape: TestInputShape::Doublet, ..TestInput::default() },
             ..RequirementSettings::default()
         };

@@ -10,8 +10,8 @@ use crate::dataset::{BundleKind, ConditionId, Pair};
 use crate::requirements::{Summary, SummarySource};
 
 use super::{
-    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Engine, Execution, ModeFinding,
-    Progress, bandwidth_findings, mode_findings,
+    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Engine, Execution, KnownPoles,
+    ModeFinding, Progress, bandwidth_findings, mode_findings,
 };
 
 /// Which model of a condition a number is of.
@@ -205,7 +205,7 @@ struct ConditionFindings {
 }
 
 impl ConditionFindings {
-    fn of(analysis: &Analysis, id: ConditionId) -> Self {
+    fn of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Self {
         let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
         let result = match analysis.conditions.get(&id) {
             Some(Ok(result)) => result,
@@ -214,7 +214,7 @@ impl ConditionFindings {
         };
         let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
         let asked = AskedCondition { analysis, result, scheduled };
-        let (modes, no_modes) = match mode_findings(&asked, &analysis.study.requirements.mode_tolerances) {
+        let (modes, no_modes) = match mode_findings(&asked, known) {
             Ok(modes) => (modes, None),
             Err(why) => (Vec::new(), Some(missing("modes", why))),
         };
@@ -233,14 +233,18 @@ impl ConditionFindings {
 }
 
 /// What a qualification asks of the models of every condition with a result (M17.1, M17.3, M17.4), without records. Each condition is
-/// a step. Intervals take the bars of the analysis ([`Analysis::uncertainty`]).
+/// a step. Intervals take the bars of the analysis ([`Analysis::uncertainty`]); which modes flight determines takes the poles that are `known`.
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is stopped.
-pub fn requirements_of(analysis: &Analysis, execution: &Execution<'_>) -> Result<Requirements, Cancelled> {
+pub fn requirements_of(
+    analysis: &Analysis,
+    known: &KnownPoles,
+    execution: &Execution<'_>,
+) -> Result<Requirements, Cancelled> {
     let settings = &analysis.study.settings;
     let ids: Vec<ConditionId> = analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
-    let found = execution.each(ids.len(), 1, |index| ConditionFindings::of(analysis, ids[index]))?;
+    let found = execution.each(ids.len(), 1, |index| ConditionFindings::of(analysis, known, ids[index]))?;
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
         interval_level: settings.uncertainty.level,
@@ -269,8 +273,13 @@ impl Engine {
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` says so.
-    pub fn requirements(&self, analysis: &Analysis, progress: &dyn Progress) -> Result<Requirements, Cancelled> {
-        requirements_of(analysis, &Execution::new(self.executor(), progress, analysis.conditions.len()))
+    pub fn requirements(
+        &self,
+        analysis: &Analysis,
+        known: &KnownPoles,
+        progress: &dyn Progress,
+    ) -> Result<Requirements, Cancelled> {
+        requirements_of(analysis, known, &Execution::new(self.executor(), progress, analysis.conditions.len()))
     }
 }
 

@@ -8,8 +8,9 @@ use crate::requirements::{BandwidthRule, ModeVerdict, NamedBy};
 use crate::units::{s_to_ms, telling};
 
 use super::{
-    Analysis, BandwidthFinding, Cancelled, Execution, Job, ModeNumbers, Progress, RequirementRole, RequirementSettings,
-    Requirements, SummaryFinding, Table, TimeHistories, Uncertainty, requirements_of,
+    Analysis, BandwidthFinding, Cancelled, Execution, Job, KnownPoles, MissingFinding, ModeNumbers, Progress,
+    RequirementRole, RequirementSettings, Requirements, SummaryFinding, Table, TimeHistories, Uncertainty,
+    requirements_of,
 };
 
 /// What a qualification asks of an analysis, with its error bars where they are known.
@@ -21,6 +22,8 @@ pub struct RequirementsJob {
     pub uncertainty: Option<Arc<Uncertainty>>,
     /// What is asked with, which an analysis does not depend on.
     pub settings: Arc<RequirementSettings>,
+    /// What was identified of conditions.
+    pub known: KnownPoles,
 }
 
 impl PartialEq for RequirementsJob {
@@ -30,7 +33,8 @@ impl PartialEq for RequirementsJob {
             (None, None) => true,
             _ => false,
         };
-        Arc::ptr_eq(&self.analysis, &other.analysis) && same_bars && self.settings == other.settings
+        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
+        same_analysis && same_bars && self.settings == other.settings && self.known == other.known
     }
 }
 
@@ -42,7 +46,7 @@ impl Job for RequirementsJob {
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let analysis = Analysis { uncertainty: self.uncertainty.clone(), ..self.analysis.asked_with(&self.settings) };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
-        Ok(Arc::new(requirements_of(&analysis, &execution)?))
+        Ok(Arc::new(requirements_of(&analysis, &self.known, &execution)?))
     }
 }
 
@@ -97,6 +101,12 @@ impl Requirements {
         table
     }
 
+    /// Why a condition has no modes to compare; none where it has.
+    pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
+        let is_of = |of: &&MissingFinding| of.condition == Some(condition) && matches!(of.what, "modes" | "all");
+        self.missing.iter().find(is_of).map(|of| of.why.as_str())
+    }
+
     /// The modes of a condition: flown, of the physics representative, and with the couplings of the study where there are some.
     pub fn mode_table(&self, condition: ConditionId) -> Table {
         let modes = || self.modes.iter().filter(|of| of.condition == condition);
@@ -108,7 +118,13 @@ impl Requirements {
         if is_coupled {
             columns.extend(heads("corrected").into_iter().chain([verdict_of("corrected")]));
         }
-        let mut table = Table::new(format!("Modes of condition {condition}"), columns);
+        let deviations = if modes().any(|of| of.identified_deviation.is_some()) {
+            "standard deviations of flown modes known"
+        } else {
+            "standard deviations of flown modes not known (they are of a model identified in this session): not determined is what lies below \
+             the band"
+        };
+        let mut table = Table::new(format!("Modes of condition {condition}; {deviations}"), columns);
         for of in modes() {
             let name = of.name.map_or_else(|| format!("mode {}", of.number), |name| name.to_string());
             let named_by = if of.named_by == NamedBy::States { "states" } else { "frequency" };
@@ -140,8 +156,8 @@ impl Requirements {
         let of_records = histories.filter(|of| !of.records.is_empty());
         let columns = heads.map(str::to_owned).into_iter().chain(of_records.into_iter().flat_map(|of| of.cost_heads()));
         let weights = match of_records {
-            Some(_) => "; J_rms over the records that are open, deg, deg/s, ft/s and ft/s\u{b2} weighing the same",
-            None => "",
+            Some(of) => format!("; J_rms over all records of a condition, {}", of.weights_words()),
+            None => String::new(),
         };
         let mut table = Table::new(format!("Summary: models against flight{weights}"), columns);
         let over_time = |id, role| of_records.into_iter().flat_map(move |found| found.costs(id, role));
@@ -204,7 +220,7 @@ impl BandwidthFinding {
             words.push("rests on the model below the band".to_owned());
         }
         if self.phase_delay_of_line {
-            words.push("τ_p of the line of least squares".to_owned());
+            words.push("τ_p of the least-squares line".to_owned());
         }
         words.join("; ")
     }

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! 1  a record is prepared as an identification prepares it, pieces of 2 s and more
-//! 2  each model answers to the flown sticks, in windows of at most 10 s, each from an estimated state and offsets (M14, 6)
+//! 2  each model answers to the flown sticks, in windows of at most 10 s, each from an estimated state and offsets (M14, 6); the windows of
+//!    all models of a condition are the same, so that their manoeuvres begin at the same samples
 //! 3  each row of the table of tolerances whose output and unit are there: share inside, largest excess, correlation
 //! ```
 
@@ -20,7 +21,8 @@ use crate::records::LaidOutRecord;
 use crate::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck, ToleranceTable};
 
 use super::{
-    Analysis, Cancelled, ConditionAnalysis, Execution, Job, MissingFinding, Progress, RequirementRole, RoleModelError,
+    Analysis, Cancelled, ConditionAnalysis, Engine, Execution, Job, MissingFinding, Progress, RequirementRole,
+    RoleModelError,
 };
 
 /// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
@@ -103,6 +105,22 @@ impl Job for TimeHistoriesJob {
     }
 }
 
+impl Engine {
+    /// What the models of an analysis answer to `records` within the tolerances of its study; see [`time_histories_of`].
+    ///
+    /// # Errors
+    /// [`Cancelled`] soon after `progress` says so.
+    pub fn time_histories(
+        &self,
+        analysis: &Analysis,
+        records: &[HistoryRecords],
+        progress: &dyn Progress,
+    ) -> Result<TimeHistories, Cancelled> {
+        let execution = Execution::new(self.executor(), progress, HistoryRecords::steps(records));
+        time_histories_of(analysis, records, &analysis.study.requirements.tolerances, &execution)
+    }
+}
+
 /// Whether an off-axis output goes the way that it went in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -114,6 +132,12 @@ pub enum Trend {
 }
 
 impl Trend {
+    /// Of an output that is off the axis of the input that moved most, by the correlation of simulated and flown; none on the axis.
+    pub(super) fn of(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
+        let correlation = correlation.filter(|_| on_axis == Some(false))?;
+        Some(if correlation > 0.0 { Self::Correct } else { Self::Opposite })
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {
@@ -186,6 +210,9 @@ pub struct HistoryFinding {
     pub window_s: f64,
     /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; none where no output has such a unit.
     pub j_rms: Option<f64>,
+    /// Names of the outputs that do not count in it: their units are none of angles, speeds and accelerations.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub j_rms_left_out: Vec<String>,
     /// Theil's coefficient of each output that moves, by its name: 0 to 1.
     pub theil: BTreeMap<String, f64>,
     /// Each row of the table that can be applied.
@@ -204,12 +231,12 @@ pub struct TimeHistories {
 }
 
 /// Everything that answers are compared by, the same for all records.
-struct Comparer<'a> {
+pub(super) struct Comparer<'a> {
     inputs: &'a [Channel],
     outputs: &'a [Channel],
     on_axis: PairTable<bool>,
     /// The rows that can be applied, each with its tolerance in the unit of the dataset.
-    rows: Vec<(&'a Tolerance, ChannelTolerance)>,
+    pub(super) rows: Vec<(&'a Tolerance, ChannelTolerance)>,
 }
 
 /// A record, ready to be simulated, with the models that are to answer.
@@ -234,11 +261,12 @@ pub fn time_histories_of(
     let comparer = Comparer::of(analysis, tolerances, &mut missing);
     let prepared = prepared(analysis, records, execution, &mut missing)?;
     let models = role_models(analysis, &prepared, &mut missing);
-    let answers: Vec<(&PreparedHistory<'_>, RequirementRole, &StateSpace)> = prepared
+    let answers: Vec<(&PreparedHistory<'_>, RequirementRole, (&StateSpace, ValidationSettings))> = prepared
         .iter()
         .flat_map(|history| {
-            let of_condition = models.get(&history.result.condition.id()).into_iter().flatten();
-            of_condition.map(move |(role, model)| (history, *role, model))
+            let of_condition = || models.get(&history.result.condition.id()).into_iter().flatten();
+            let settings = common_windows(of_condition().map(|(_, model)| model), &history.segments);
+            of_condition().map(move |(role, model)| (history, *role, (model, settings)))
         })
         .collect();
     let found = execution.each(answers.len(), 1, |index| {
@@ -256,6 +284,14 @@ pub fn time_histories_of(
         }
     }
     Ok(histories)
+}
+
+/// How every model of a condition answers to a record: the signals as they are, in the same windows.
+pub(super) fn common_windows<'m>(
+    models: impl IntoIterator<Item = &'m StateSpace>,
+    segments: &[Segment],
+) -> ValidationSettings {
+    ValidationSettings::unfiltered().common_to(models, segments)
 }
 
 fn missing_of(condition: Option<ConditionId>, why: String) -> MissingFinding {
@@ -330,7 +366,11 @@ fn role_models(
 }
 
 impl<'a> Comparer<'a> {
-    fn of(analysis: &'a Analysis, tolerances: &'a ToleranceTable, missing: &mut Vec<MissingFinding>) -> Self {
+    pub(super) fn of(
+        analysis: &'a Analysis,
+        tolerances: &'a ToleranceTable,
+        missing: &mut Vec<MissingFinding>,
+    ) -> Self {
         let dataset = &analysis.study.dataset;
         let mut rows = Vec::new();
         for tolerance in tolerances.rows() {
@@ -344,7 +384,7 @@ impl<'a> Comparer<'a> {
     }
 
     /// The input that varies most over the segments of a record; none where the inputs cannot be compared.
-    fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
+    pub(super) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
         let (first, others) = self.inputs.split_first()?;
         if others.iter().any(|input| input.unit != first.unit) {
             return None;
@@ -359,16 +399,21 @@ impl<'a> Comparer<'a> {
         (0..self.inputs.len()).max_by(|a, b| variation(*a).total_cmp(&variation(*b)))
     }
 
+    /// Whether an output is on-axis to the input that moved most; none where that is not known.
+    pub(super) fn is_on_axis(&self, output: usize, moved: Option<usize>) -> Option<bool> {
+        moved.map(|input| self.on_axis[Pair::new(output, input)])
+    }
+
     /// The answer of a model to a record against the tolerances, or in words why there is none.
     fn finding(
         &self,
         history: &PreparedHistory<'_>,
         role: RequirementRole,
-        model: &StateSpace,
+        (model, settings): (&StateSpace, ValidationSettings),
     ) -> Result<HistoryFinding, String> {
         let PreparedHistory { result, record, segments } = history;
-        let settings = ValidationSettings::unfiltered();
         let validation = validate(model, segments, &settings, &Sequential).map_err(|error| error.to_string())?;
+        let rms = RmsCost::of(&validation.windows, self.outputs);
         let moved = self.moved_input(segments);
         let rows = self.rows.iter().map(|row| self.against(row, &validation.windows, moved));
         let length_s = |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
@@ -383,7 +428,12 @@ impl<'a> Comparer<'a> {
             samples: validation.windows.iter().map(|window| window.measured.nrows()).sum(),
             windows: validation.windows.len(),
             window_s: validation.windows.iter().map(length_s).fold(0.0, f64::max),
-            j_rms: RmsCost::of(&validation.windows, self.outputs).map(|cost| cost.value),
+            j_rms: rms.as_ref().map(|cost| cost.value),
+            j_rms_left_out: rms
+                .into_iter()
+                .flat_map(|cost| cost.left_out)
+                .map(|at| self.outputs[at].name.clone())
+                .collect(),
             theil: self.theil(&validation),
             tolerances: rows.collect::<Result<_, _>>()?,
         })
@@ -405,8 +455,7 @@ impl<'a> Comparer<'a> {
         let check = checks.first().ok_or("there are no samples to compare")?;
         let worst: &ToleranceCheck = check.worst().ok_or("there are no samples to compare")?;
         let correlation = check.correlation();
-        let on_axis = moved.map(|input| self.on_axis[Pair::new(of_channel.output, input)]);
-        let trend = |correlation| if correlation > 0.0 { Trend::Correct } else { Trend::Opposite };
+        let on_axis = self.is_on_axis(of_channel.output, moved);
         Ok(ToleranceFinding {
             quantity: tolerance.quantity.clone(),
             output: tolerance.channel.clone(),
@@ -417,7 +466,7 @@ impl<'a> Comparer<'a> {
             largest_excess_at_s: worst.largest_excess_at_s,
             correlation,
             on_axis,
-            trend: correlation.filter(|_| on_axis == Some(false)).map(trend),
+            trend: Trend::of(correlation, on_axis),
         })
     }
 }

@@ -7,9 +7,9 @@ use nalgebra::{DMatrix, DVector};
 use super::coupled_analysis_tests::COUPLED;
 use super::couplings_example_tests::EXAMPLE;
 use super::*;
-use crate::dataset::{BundleKind, ConditionId, Dynamics, Pair};
+use crate::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
 use crate::executor::Sequential;
-use crate::identification::{FirstOrderHold, FlightRecord, Preparation};
+use crate::identification::{FirstOrderHold, FlightRecord, Preparation, segments_of, validate};
 use crate::requirements::{Tolerance, ToleranceTable};
 use crate::response::{FrequencyGrid, FrequencyResponse};
 
@@ -85,9 +85,16 @@ fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
     assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
     assert_eq!(found.cost_table().rows[0][3], format!("{rms:.2}"));
     let of_records = found.record_table(CONDITION);
+    let is_left = |of: &ToleranceFinding| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite);
+    let first = |n: usize| RequirementRole::ALL.map(|role| found.of_role(CONDITION, role).nth(n).unwrap());
     let rows = found.records[0].tolerances.len();
-    assert_eq!(of_records.rows.len(), 2 * 4 * rows);
-    assert!(of_records.rows[0][0] == "sweep (held out)" && of_records.rows[4 * rows][0] == "sweep");
+    let left = |n: usize| (0..rows).filter(|row| first(n).iter().any(|of| is_left(&of.tolerances[*row]))).count();
+    let named = |name: &str| of_records.rows.iter().filter(|row| row[0] == name).count();
+    assert_eq!([named("sweep (held out)"), named("sweep")], [left(0), left(1)]);
+    assert!(of_records.title.contains(&format!("{} of {} rows", 2 * rows - left(0) - left(1), 2 * rows)));
+    let row = of_records.rows.iter().find(|row| row[0] == "sweep" && row[1] == long.quantity).unwrap();
+    assert!(long.largest_excess > 0.0 && row[2].contains(&format!("at {:.1} s", long.largest_excess_at_s)), "{row:?}");
+    assert_eq!(row[5], "100.0", "the model that flew is always inside");
 }
 
 #[test]
@@ -165,4 +172,43 @@ fn a_job_is_stopped_and_is_known_by_what_it_depends_on() {
     let tolerances = ToleranceTable::new("mine", job.tolerances.rows()[..1].to_vec()).unwrap();
     assert_ne!(TimeHistoriesJob { tolerances, ..job.clone() }, job);
     assert_ne!(TimeHistoriesJob { records: Vec::new(), ..job.clone() }, job);
+}
+
+#[test]
+fn the_models_of_a_condition_are_compared_in_the_same_windows() {
+    let analysis = &EXAMPLE.analysis;
+    let flight = flown(analysis, RequirementRole::Identified, 1500);
+    let segments = segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
+    let result = analysis.condition(CONDITION).unwrap();
+    let slow = analysis.role_model(result, RequirementRole::Physics).unwrap();
+    // A mode that grows e-fold in 1 s is compared over 3 s.
+    let fast = StateSpace::new(
+        slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
+        slow.b().clone(),
+        slow.c().clone(),
+        slow.d().clone(),
+    )
+    .unwrap();
+    let alone = common_windows([&slow], &segments);
+    let both = common_windows([&slow, &fast], &segments);
+    assert!(alone.longest_window_s > 3.5 && (both.longest_window_s - 3.0).abs() < 1e-6, "{alone:?} {both:?}");
+    let windows = |model: &StateSpace| -> Vec<(f64, usize)> {
+        let found = validate(model, &segments, &both, &Sequential).unwrap();
+        found.windows.iter().map(|window| (window.start_s, window.measured.nrows())).collect()
+    };
+    assert_eq!(windows(&slow), windows(&fast));
+    // One that diverges too fast to be compared at all shortens nobody's.
+    let hopeless = StateSpace::new(
+        slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
+        slow.b().clone(),
+        slow.c().clone(),
+        slow.d().clone(),
+    )
+    .unwrap();
+    assert_eq!(common_windows([&slow, &hopeless], &segments), alone);
+}
+
+/// Greatest real part of the poles \[rad/s\].
+fn fastest(model: &StateSpace) -> f64 {
+    model.a().complex_eigenvalues().iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max)
 }

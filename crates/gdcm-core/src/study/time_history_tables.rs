@@ -5,10 +5,7 @@ use std::collections::BTreeSet;
 use crate::dataset::ConditionId;
 use crate::units::telling;
 
-use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFinding};
-
-/// Of which Theil's coefficient is without unit.
-const COST_TITLE: &str = "J_rms [deg, deg/s, ft/s, ft/s\u{b2}] and Theil's coefficients";
+use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFinding, Trend};
 
 /// Samples inside, and all of them.
 type Counted = (f64, f64);
@@ -52,6 +49,13 @@ impl TimeHistories {
         let rows = self.tolerance_table.rows().iter().map(|row| row.quantity.as_str());
         let is_applied = |finding: &HistoryFinding, name: &str| finding.tolerances.iter().any(|of| of.quantity == name);
         rows.filter(move |name| self.records.iter().any(|finding| is_applied(finding, name)))
+    }
+
+    /// The same without those of integrals.
+    pub(super) fn measured_quantities(&self) -> impl Iterator<Item = &str> {
+        let is_integral =
+            |name: &str| self.tolerance_table.rows().iter().any(|row| row.integrated && row.quantity == name);
+        self.quantities().filter(move |name| !is_integral(name))
     }
 
     /// Share of time inside each tolerance over all records of each condition, model by model.
@@ -99,7 +103,7 @@ impl TimeHistories {
     /// `J_rms` and Theil's coefficients over all records of each condition and model.
     pub fn cost_table(&self) -> Table {
         let columns = ["condition", "records", "model"].map(str::to_owned).into_iter().chain(self.cost_heads());
-        let mut table = Table::new(COST_TITLE, columns);
+        let mut table = Table::new(format!("J_rms and Theil's coefficients; {}", self.weights_words()), columns);
         for (condition, records) in self.conditions() {
             for role in RequirementRole::ALL {
                 let heads = [condition.to_string(), records.to_string(), role.name().to_owned()];
@@ -109,38 +113,63 @@ impl TimeHistories {
         table
     }
 
-    /// Every record of a condition against every tolerance, model by model.
+    /// The records of a condition against every tolerance: what each model leaves of the corridor, and when most. What every model is
+    /// inside of throughout, off the axis with the correct trend, is left out and counted.
     pub fn record_table(&self, condition: ConditionId) -> Table {
-        let columns = ["record", "quantity", "model", "inside [%]", "largest excess", "at [s]", "off-axis trend"];
-        let mut table = Table::new(format!("Time histories of condition {condition}"), columns);
+        let heads = ["record", "quantity"].map(str::to_owned);
+        let columns = heads.into_iter().chain(RequirementRole::ALL.map(|role| format!("{}: inside [%]", role.name())));
+        let mut table = Table::new("", columns);
         let of_condition: Vec<&HistoryFinding> =
             self.records.iter().filter(|finding| finding.condition == condition).collect();
-        for of_record in of_condition.chunk_by(|a, b| a.record == b.record) {
-            for (row, quantity) in of_record[0].tolerances.iter().enumerate() {
-                for finding in of_record {
-                    table.row(record_cells(finding, &finding.tolerances[row], &quantity.quantity));
+        let mut all = 0;
+        // Two records may have the same name: the roles rise within one.
+        for of_record in of_condition.chunk_by(|a, b| a.record == b.record && a.role < b.role) {
+            for (row, first) in of_record[0].tolerances.iter().enumerate() {
+                all += 1;
+                let of_role =
+                    |role| of_record.iter().filter(move |of| of.role == role).find_map(|of| of.tolerances.get(row));
+                let found = RequirementRole::ALL.map(of_role);
+                if found.iter().flatten().any(|of| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite)) {
+                    let held_out = if of_record[0].held_out { " (held out)" } else { "" };
+                    let heads = [format!("{}{held_out}", of_record[0].record), first.quantity.clone()];
+                    table.row(heads.into_iter().chain(found.map(|of| of.map_or("-".to_owned(), excess_words))));
                 }
             }
         }
+        table.title = format!(
+            "Records of condition {condition}: share of time inside, largest excess beyond the corridor and when; {} of {all} rows, of which \
+             every model is always inside, are left out",
+            all - table.rows.len()
+        );
         table
+    }
+
+    /// How the outputs weigh in `J_rms`, and which do not count in it.
+    pub fn weights_words(&self) -> String {
+        let left_out: BTreeSet<&str> =
+            self.records.iter().flat_map(|of| &of.j_rms_left_out).map(String::as_str).collect();
+        let without = if left_out.is_empty() {
+            String::new()
+        } else {
+            format!("; without {}", Vec::from_iter(left_out).join(", "))
+        };
+        format!("deg, deg/s, ft/s and ft/s\u{b2} weighing the same{without}")
     }
 }
 
-fn record_cells(finding: &HistoryFinding, of: &ToleranceFinding, quantity: &str) -> [String; 7] {
-    let held_out = if finding.held_out { " (held out)" } else { "" };
-    [
-        format!("{}{held_out}", finding.record),
-        quantity.to_owned(),
-        finding.role.name().to_owned(),
-        percent(Some(of.share_inside)),
-        if of.largest_excess > 0.0 { format!("{} {}", telling(of.largest_excess, 2), of.unit) } else { "none".into() },
-        number(Some(of.largest_excess_at_s), 1),
-        of.trend.map_or("", super::Trend::name).to_owned(),
-    ]
+/// "85.2; 0.84 deg/s at 12.3 s; opposite": share of time inside, what is beyond, a trend that is not correct.
+fn excess_words(of: &ToleranceFinding) -> String {
+    let mut words = vec![percent(Some(of.share_inside))];
+    if of.largest_excess > 0.0 {
+        let at_s = number(Some(of.largest_excess_at_s), 1);
+        words.push(format!("{} {} at {at_s} s", telling(of.largest_excess, 2), of.unit));
+    }
+    words.extend((of.trend == Some(Trend::Opposite)).then(|| "opposite trend".to_owned()));
+    words.join("; ")
 }
 
 /// A share in percent, rounded down: 100 is all of it.
-fn percent(share: Option<f64>) -> String {
+pub(super) fn percent(share: Option<f64>) -> String {
     number(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }
 

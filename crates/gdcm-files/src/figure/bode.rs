@@ -11,7 +11,7 @@ use super::axis::{Axis, Range};
 use super::coherence::coherence_panel;
 use super::condition_source::{ConditionSource, CurveId, settings_words};
 use super::curve::{BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
-use super::drawing::{Color, Hue};
+use super::drawing::{Color, Dash, Hue, Stroke};
 use super::error::muad_about;
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Along, Band, Curve, Envelope, Mark, Note, Place, Rule};
@@ -25,6 +25,8 @@ const BAND: Color = Color::of(Hue::Accent).tint(8);
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
 /// The ground of frequencies above the band where there are leads.
 const INVALID: Color = Color::of(Hue::Warning).tint(10);
+/// A frequency that is marked.
+const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
 /// Around an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
 /// Height of the magnitude, where that of the phase is 1.
@@ -55,6 +57,8 @@ pub struct BodeOptions {
     pub shows_muad: bool,
     /// The response whose zeros are shown among the poles, where those of one are.
     pub zeros_of: Option<Pair>,
+    /// Frequencies \[rad/s\] that are marked, by their names: those that a bandwidth is read at.
+    pub crossings: Vec<(&'static str, f64)>,
     /// The frequencies shown \[rad/s\]; those of the curves, where none are given.
     pub omega: Option<Range>,
     /// The values shown in the upper and in the lower panel; those that the band needs, where none are given.
@@ -242,6 +246,14 @@ fn plot(
         Some(up_to) => panel.over(options.invalid(band, up_to)).over(options.band(band)),
         None => panel.over(options.band(band)),
     };
+    let marked = |panel: Panel, is_named: bool| {
+        let rules = options.crossings.iter().map(|(name, omega)| {
+            let rule = Rule::vertical(options.unit.of_omega(*omega), CROSSING);
+            if is_named { rule.label(*name) } else { rule }
+        });
+        panel.with_all(rules)
+    };
+    let (magnitude, phase) = (marked(magnitude, true), marked(phase, false));
     Plot::default().panel(on_ground(magnitude).weight(MAGNITUDE_WEIGHT)).panel(on_ground(phase))
 }
 

@@ -16,6 +16,8 @@ const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
 /// What was flown, and the corridor about it.
 const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
 const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
+/// Height of the difference from flight, where that of the record is 1.
+const DIFFERENCE_WEIGHT: f64 = 0.55;
 /// How much wider a line is outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
 
@@ -64,8 +66,8 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     Figure::new(title).caption(caption).columns(2).aspect(0.4).plots(std::iter::once(moved).chain(outputs))
 }
 
-/// An input of a record, then a plot for each quantity that has a tolerance: what was flown with the corridor about it, what each model
-/// answers, wide where it is outside. Every window begins anew.
+/// An input of a record, then a plot for each quantity that has a tolerance: what was flown with the corridor about it and what each model
+/// answers, above what it answers less flight, both wide where it is outside. Every window begins anew.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let moved = &dataset.inputs()[input];
     let panel = |label: &str| Panel::new(Axis::linear("time [s]"), Axis::linear(label));
@@ -75,54 +77,76 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
     let first = Plot::new(&label).panel(panel(&label).with(curve));
     let quantities = history.quantities.iter().filter(|of| !of.models.is_empty()).map(|of| {
         let label = format!("{} [{}]", of.tolerance.quantity, of.unit);
+        let less = format!("less flight [{}]", of.unit);
         Plot::new(format!("{}, {}", of.tolerance.quantity, of.tolerance.words()))
-            .panel(panel(&label).with_all(marks(of)))
+            .panel(panel(&label).with_all(marks(of, Shown::AsItIs)))
+            .panel(panel(&less).with_all(marks(of, Shown::LessFlight)).weight(DIFFERENCE_WEIGHT))
     });
     let held_out = if history.held_out { ", held out" } else { "" };
     let missing: String = history.missing.iter().map(|why| format!(" {why}.")).collect();
     let caption = format!(
-        "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Wide: \
-         outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
+        "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Below: \
+         less flight. Wide: outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
     );
     let title = format!("Condition {}: {}{held_out}", history.condition, history.record);
     Figure::new(title).caption(caption).columns(2).aspect(0.4).plots(std::iter::once(first).chain(quantities))
 }
 
-fn marks(of: &QuantityHistory) -> Vec<Mark> {
+/// What of a record is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Shown {
+    AsItIs,
+    LessFlight,
+}
+
+impl Shown {
+    /// A value at a sample of a window.
+    fn of(self, value: f64, window: &ToleranceCheck, n: usize) -> f64 {
+        if self == Self::LessFlight { value - window.flown[n] } else { value }
+    }
+}
+
+/// Every sample of a record with its time \[s\], and a gap after each window, which the next one does not go on from.
+fn samples(check: &RecordCheck) -> impl Iterator<Item = (f64, Option<(&ToleranceCheck, usize)>)> {
+    let time = |window: &ToleranceCheck, n: usize| window.start_s + n as f64 * window.sample_time_s;
+    check.windows.iter().flat_map(move |window| {
+        let all = (0..window.samples()).map(move |n| (time(window, n), Some((window, n))));
+        all.chain([(time(window, window.samples()), None)])
+    })
+}
+
+/// A value at each sample over time.
+fn curve(check: &RecordCheck, value: impl Fn(&ToleranceCheck, usize) -> f64) -> (Vec<f64>, Vec<f64>) {
+    samples(check).map(|(time, at)| (time, at.map_or(f64::NAN, |(window, n)| value(window, n)))).unzip()
+}
+
+fn marks(of: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     let corrected = of.models.iter().find(|(role, _)| *role == RequirementRole::Corrected);
     let Some((_, about)) = corrected.or(of.models.first()) else { return Vec::new() };
-    let time = |window: &ToleranceCheck, n: usize| window.start_s + n as f64 * window.sample_time_s;
-    // A gap after each window, which the next one does not go on from.
-    let joined = |check: &RecordCheck, value: &dyn Fn(&ToleranceCheck, usize) -> f64| -> (Vec<f64>, Vec<f64>) {
-        let windows = check.windows.iter().flat_map(|window| {
-            let samples = (0..window.samples()).map(|n| (time(window, n), value(window, n)));
-            samples.chain([(time(window, window.samples()), f64::NAN)]).collect::<Vec<_>>()
-        });
-        windows.unzip()
-    };
-    let corridor = about.windows.iter().flat_map(|window| {
-        let points = (0..window.samples()).map(|n| {
-            let (flown, width) = (window.flown[n], window.width[n]);
-            [time(window, n), flown - width, flown + width]
-        });
-        points.chain([[time(window, window.samples()), f64::NAN, f64::NAN]]).collect::<Vec<_>>()
+    let corridor = samples(about).map(|(time, at)| match at {
+        Some((window, n)) => {
+            let (flown, width) = (shown.of(window.flown[n], window, n), window.width[n]);
+            [time, flown - width, flown + width]
+        }
+        None => [time, f64::NAN, f64::NAN],
     });
     let corridor = Envelope { name: "corridor".to_owned(), color: CORRIDOR, edge: None, points: corridor.collect() };
-    let (x, y) = joined(about, &|window, n| window.flown[n]);
-    let flown = Curve::new("flown", FLOWN, x, y).key("flown");
+    let (x, y) = curve(about, |window, n| shown.of(window.flown[n], window, n));
+    let flown = (shown == Shown::AsItIs).then(|| Mark::from(Curve::new("flown", FLOWN, x, y).key("flown")));
     let models = of.models.iter().rev().flat_map(|(role, check)| {
         let line = line_of(*role);
-        let (x, y) = joined(check, &|window, n| window.simulated[n]);
+        let (x, y) = curve(check, |window, n| shown.of(window.simulated[n], window, n));
         let all = Curve::new(role.name(), line, x, y).key(role.name());
         let is_outside =
             |window: &ToleranceCheck, n: usize| (window.simulated[n] - window.flown[n]).abs() > window.width[n];
-        let outside =
-            |window: &ToleranceCheck, n: usize| if is_outside(window, n) { window.simulated[n] } else { f64::NAN };
-        let (x, y) = joined(check, &outside);
+        let (x, y) = curve(check, |window, n| match is_outside(window, n) {
+            true => shown.of(window.simulated[n], window, n),
+            false => f64::NAN,
+        });
         let wide = Stroke { width_pt: line.width_pt + OUTSIDE_PT, dash: Dash::Solid, ..line };
         let is_any = y.iter().any(|value| value.is_finite());
         let outside = is_any.then(|| Mark::from(Curve::new(format!("{}, outside", role.name()), wide, x, y)));
         std::iter::once(Mark::from(all)).chain(outside).collect::<Vec<_>>()
     });
-    [Mark::from(corridor), Mark::from(flown)].into_iter().chain(models).collect()
+    std::iter::once(Mark::from(corridor)).chain(flown).chain(models).collect()
 }

@@ -12,6 +12,8 @@ use super::mark::{Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId}
 
 const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const BAR: Stroke = Stroke::solid(Color::DIM, 0.7);
+/// Length and half the width of an arrow's head, as parts of what the marks of a plot span.
+const HEAD: [f64; 2] = [0.035, 0.012];
 /// Above every phase delay that is drawn \[ms\].
 const BEYOND_MS: f64 = 1e4;
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
@@ -26,15 +28,15 @@ fn look(role: RequirementRole) -> (DotShape, Color) {
     }
 }
 
-/// Bandwidth \[rad/s\] and phase delay \[ms\], where there are both.
-fn place(of: &BandwidthFinding) -> Option<[f64; 2]> {
+/// Bandwidth \[rad/s\] and phase delay \[ms\], where there are both: where a response stands in its plot.
+pub fn bandwidth_place(of: &BandwidthFinding) -> Option<[f64; 2]> {
     Some([of.omega_bw_rad_s?, s_to_ms(of.phase_delay_s?)])
 }
 
 /// The responses that have a bandwidth and a phase delay in some condition.
 pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     let mut pairs: Vec<Pair> = Vec::new();
-    for of in requirements.bandwidth.iter().filter(|of| place(of).is_some()) {
+    for of in requirements.bandwidth.iter().filter(|of| bandwidth_place(of).is_some()) {
         if !pairs.contains(&of.pair) {
             pairs.push(of.pair);
         }
@@ -42,7 +44,7 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     pairs
 }
 
-/// Phase delay over bandwidth, a plot for each attitude response: a mark for each condition and model, a line from the physics model
+/// Phase delay over bandwidth, a plot for each attitude response: a mark for each condition and model, an arrow from the physics model
 /// to the corrected one, intervals where there are some, and the engineer's levels. A number that rests on a model beyond the band is
 /// grey.
 pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, levels: &LevelBoundaries) -> Figure {
@@ -56,7 +58,7 @@ pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, level
     });
     let level = 100.0 * requirements.interval_level;
     let caption = format!(
-        "Bars: {level:.0} % intervals. Grey: rests on the model beyond the band. A line joins physics and corrected of a condition. \
+        "Bars: {level:.0} % intervals. Grey: rests on the model beyond the band. Arrows lead from physics to corrected of a condition. \
          These numbers are no qualification."
     );
     Figure::new("Bandwidth and phase delay").caption(caption).columns(2).aspect(0.66).plots(plots)
@@ -87,26 +89,55 @@ fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<I
     })
 }
 
+/// What these places span along both axes; nothing is no more than a thousandth.
+fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let values = places.clone().map(|place| place[axis]);
+        let (low, high) =
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), of| (low.min(of), high.max(of)));
+        (high - low).max(1e-3 * high.abs()).max(f64::MIN_POSITIVE)
+    })
+}
+
+/// A line from one place to another with a head in the middle, where no marker hides it; drawn to the scale of what is `spanned`.
+fn arrow(from: [f64; 2], to: [f64; 2], spanned: [f64; 2]) -> Vec<[f64; 2]> {
+    let along = [0, 1].map(|axis| (to[axis] - from[axis]) / spanned[axis]);
+    let length = along[0].hypot(along[1]);
+    if length < HEAD[0] {
+        return vec![from, to];
+    }
+    let unit = along.map(|part| part / length);
+    let at = |ahead: f64, beside: f64| {
+        let of_unit = [ahead * unit[0] - beside * unit[1], ahead * unit[1] + beside * unit[0]];
+        [0, 1].map(|axis| from[axis] + spanned[axis] * of_unit[axis])
+    };
+    let tip = 0.5 * (length + HEAD[0]);
+    let wing = |side: f64| at(tip - HEAD[0], side * HEAD[1]);
+    vec![from, at(tip, 0.0), wing(1.0), at(tip, 0.0), wing(-1.0), at(tip, 0.0), to]
+}
+
 fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
     let of_pair = || requirements.bandwidth.iter().filter(move |of| of.pair == pair);
     let of_role = |role: RequirementRole| of_pair().filter(move |of| of.role == role);
     let mut marks: Vec<Mark> = Vec::new();
+    let spanned = spanned(of_pair().filter_map(bandwidth_place));
     for from in of_role(RequirementRole::Physics) {
         let to = requirements.bandwidth_of(from.condition, pair, RequirementRole::Corrected);
-        if let (Some(from), Some(to)) = (place(from), to.and_then(place)) {
-            marks.push(Curve::new("corrected", WAY, [from[0], to[0]], [from[1], to[1]]).into());
+        if let (Some(from), Some(to)) = (bandwidth_place(from), to.and_then(bandwidth_place)) {
+            let (x, y): (Vec<f64>, Vec<f64>) = arrow(from, to, spanned).into_iter().map(|[x, y]| (x, y)).unzip();
+            marks.push(Curve::new("corrected", WAY, x, y).into());
         }
     }
     let delays = of_pair().filter_map(|of| {
         let [low, high] = of.interval.get("phase_delay_s").copied()?;
-        Some([place(of)?[0], s_to_ms(low), s_to_ms(high)])
+        Some([bandwidth_place(of)?[0], s_to_ms(low), s_to_ms(high)])
     });
     let ends: Vec<[f64; 3]> = delays.collect();
     if !ends.is_empty() {
         marks.push(Intervals { name: "interval".to_owned(), stroke: BAR, ends }.into());
     }
     for of in of_pair() {
-        if let (Some([low, high]), Some([_, delay])) = (of.interval.get("omega_bw_rad_s"), place(of)) {
+        if let (Some([low, high]), Some([_, delay])) = (of.interval.get("omega_bw_rad_s"), bandwidth_place(of)) {
             marks.push(Curve::new("interval of the bandwidth", BAR, [*low, *high], [delay, delay]).into());
         }
     }
@@ -116,7 +147,7 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
             let is_so =
                 |of: &&BandwidthFinding| (of.rests_above("omega_bw_rad_s") || of.rests_above("phase_delay_s")) == rests;
             let dots = of_role(role).filter(is_so).filter_map(|of| {
-                let [x, y] = place(of)?;
+                let [x, y] = bandwidth_place(of)?;
                 let id = Some(MarkId::Condition(of.condition));
                 // One number a condition is enough to find the others by.
                 let label = if role == RequirementRole::Corrected { of.condition.to_string() } else { String::new() };
@@ -137,6 +168,20 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_arrow_ends_where_it_leads_and_its_head_points_there() {
+        // In parts of the span from the origin to the far corner.
+        let points = arrow([1.0, 10.0], [3.0, 10.0], [2.0, 100.0]);
+        assert_eq!((points[0], points[6], points.len()), ([1.0, 10.0], [3.0, 10.0], 7));
+        let (tip, wings) = (points[1], [points[2], points[4]]);
+        for wing in wings {
+            assert!(wing[0] < tip[0] && ((tip[0] - wing[0]) / 2.0 - HEAD[0]).abs() < 1e-12, "{wing:?}");
+            assert!(((wing[1] - tip[1]).abs() / 100.0 - HEAD[1]).abs() < 1e-12, "{wing:?}");
+        }
+        assert_eq!(arrow([1.0, 10.0], [1.001, 10.0], [2.0, 100.0]).len(), 2, "too short for a head");
+        assert_eq!(spanned([[1.0, 5.0], [3.0, 5.0]].into_iter()), [2.0, 5e-3]);
+    }
 
     #[test]
     fn what_lies_beyond_a_level_is_shaded_and_beyond_the_next_one_darker() {

@@ -10,7 +10,7 @@ mod study;
 
 use std::path::Path;
 
-use gdcm_core::study::{Analysis, Cancelled, Engine, Progress, TimeHistories};
+use gdcm_core::study::{Analysis, Cancelled, Engine, KnownPoles, Progress, TimeHistories};
 
 use super::dataset_file::LoadedDataset;
 use super::file_error::FileError;
@@ -46,18 +46,28 @@ impl ReportSource {
     }
 }
 
-/// The report of an analysis, with what its models answer to flight records where that is given; `engine` has the responses that are
-/// drawn. Each condition is a step of the progress.
+/// What a report is about.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportSubject<'a> {
+    /// The analysis, with the requirements of its study.
+    pub analysis: &'a Analysis,
+    /// What its models answer to flight records, where there are some.
+    pub histories: Option<&'a TimeHistories>,
+    /// The poles that were identified.
+    pub known: &'a KnownPoles,
+}
+
+/// The report of an analysis; `engine` has the responses that are drawn. Each condition is a step of the progress.
 ///
 /// # Errors
 /// [`Cancelled`] soon after `progress` says so.
 pub fn report(
-    (analysis, histories): (&Analysis, Option<&TimeHistories>),
+    subject: ReportSubject<'_>,
     source: &ReportSource,
     engine: &mut Engine,
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
-    let with_bars = assessment::with_bars(analysis, engine, progress)?;
+    let with_bars = assessment::with_bars(subject.analysis, engine, progress)?;
     let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
     study::add_summary(&mut page, analysis);
@@ -69,7 +79,7 @@ pub fn report(
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
-    requirements::add_requirements(&mut page, (analysis, histories), engine, progress)?;
+    requirements::add_requirements(&mut page, ReportSubject { analysis, ..subject }, engine, progress)?;
     page.section("The method");
     page.fixed(include_str!("method.html"));
     study::add_models(&mut page, &analysis.study);

@@ -141,10 +141,15 @@ impl Page {
 
     /// A table of which as many columns stand side by side as fit, each time behind the first.
     pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
-        for from in (1..table.columns.len()).step_by(columns) {
+        self.wide_table_behind(table, 1, columns);
+    }
+
+    /// The same behind the first `heads` columns.
+    pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
+        for from in (heads..table.columns.len()).step_by(columns) {
             let part = |cells: &[String]| {
                 let to = (from + columns).min(cells.len());
-                std::iter::once(&cells[0]).chain(&cells[from..to]).cloned().collect::<Vec<_>>()
+                cells[..heads].iter().chain(&cells[from..to]).cloned().collect::<Vec<_>>()
             };
             let mut sheet = Table::new(table.title.clone(), part(&table.columns));
             sheet.rows = table.rows.iter().map(|row| part(row)).collect();

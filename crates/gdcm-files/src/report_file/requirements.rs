@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{
-    Analysis, BandwidthFinding, Cancelled, Engine, Progress, Requirements, Study, Table, TimeHistories,
+    BandwidthFinding, Cancelled, Engine, Progress, Requirements, RequirementsOverview, Study, Table, TimeHistories,
 };
 
-use super::Unobtrusive;
 use super::page::Page;
+use super::{ReportSubject, Unobtrusive};
 use crate::figure::requirements_figure;
 
 /// Columns of a table that fit a sheet.
@@ -20,11 +20,11 @@ const COLUMNS: usize = 9;
 /// [`Cancelled`] soon after `progress` says so.
 pub(super) fn add_requirements(
     page: &mut Page,
-    (analysis, histories): (&Analysis, Option<&TimeHistories>),
+    ReportSubject { analysis, histories, known }: ReportSubject<'_>,
     engine: &Engine,
     progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
-    let requirements = engine.requirements(analysis, &Unobtrusive(progress))?;
+    let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
     page.section("Requirements");
     page.paragraph(
         "What those ask who accept a simulator or a flight control law, of the physics representative as it is, under its own correction \
@@ -38,7 +38,10 @@ pub(super) fn add_requirements(
         "Means of J (M4) and of the share of the band, in ln \u{3c9}, inside the envelopes of unnoticeable added dynamics \
          (MIL-STD-1797A, appendix A, 4.2.1.2), against the identified representative.",
     );
-    page.table(&requirements.summary_table(None));
+    page.wide_table_behind(&requirements.summary_table(histories), 3, COLUMNS - 2);
+    let limits = &analysis.study.requirements.overview;
+    let overview = requirements.overview(&analysis.study.dataset, histories, limits);
+    page.wide_table_behind(&overview.table, RequirementsOverview::HEADS, COLUMNS);
     if let Some(histories) = histories {
         add_histories(page, histories);
     }
@@ -100,7 +103,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
         page.table(&histories.share_table());
-        page.table(&histories.cost_table());
+        histories.conditions().into_iter().for_each(|(id, _)| page.table(&histories.record_table(id)));
     }
     page.list(by_words(histories.missing.iter().map(|of| (of.condition, of.why.clone()))));
 }

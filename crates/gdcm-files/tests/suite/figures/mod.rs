@@ -5,8 +5,8 @@ use std::sync::{Arc, LazyLock};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::study::{
-    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine, Requirements,
-    Study, Unobserved, curves_band,
+    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine, KnownPoles,
+    Requirements, Study, Unobserved, curves_band,
 };
 use gdcm_files::figure::{
     Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
@@ -35,7 +35,7 @@ static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
     let grid = (curves_band(&study.settings), CURVE_POINTS);
     let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
-    let requirements = Arc::new(engine.requirements(&analysis, &Unobserved).unwrap());
+    let requirements = Arc::new(engine.requirements(&analysis, &KnownPoles::default(), &Unobserved).unwrap());
     let couplings = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
     let couplings = couplings.unwrap().unwrap().unwrap();
     Example { analysis, curves, requirements, couplings }

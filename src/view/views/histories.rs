@@ -9,7 +9,7 @@ use gdcm_core::study::{
     Analysis, Edit, HistoryRecord, RecordHistory, RecordHistoryJob, RequirementSettings, TestAnswersJob,
 };
 use gdcm_core::units::number;
-use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
+use gdcm_files::figure::{Figure, FigureKind, OverTime};
 
 use super::{Need, RequirementsPage, View};
 use crate::view::command::{Command, RequirementTable};
@@ -251,6 +251,4 @@ impl FigureWords for HistoryWords<'_> {
     fn plot(&self, plot: usize) -> String {
         self.figure.plots.get(plot).map_or_else(String::new, |plot| format!("{} over time", plot.title))
     }
-
-    fn pointed_ui(&self, _: &mut Ui, _: usize, _: &MarkId, _: [f64; 2]) {}
 }

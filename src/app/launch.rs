@@ -16,7 +16,7 @@ use crate::view::start_page::OpensWith;
 use crate::view::{Command, Preferences};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Engine, LIVE_PROOF};
-use gdcm_files::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
+use gdcm_files::{Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
 
 use super::threads::{self, Fault, caught};
 use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
@@ -45,6 +45,8 @@ pub struct Setup {
     pub look_every: Duration,
     /// How the engineer likes the window.
     pub preferences: Preferences,
+    /// What went wrong before it was opened: it says so at first.
+    pub trouble: Option<String>,
 }
 
 impl Default for Setup {
@@ -57,6 +59,7 @@ impl Default for Setup {
             keep_after: Duration::from_secs(2),
             look_every: Duration::from_millis(1500),
             preferences: Preferences::default(),
+            trouble: None,
         }
     }
 }
@@ -80,16 +83,21 @@ impl Setup {
 /// A folder, or a file of another program, is opened to put its models together.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let models = path.clone().filter(|path| holds_models(path));
-    let opened = match load(path.filter(|_| models.is_none())) {
-        Ok(opened) => opened,
-        Err(error) => {
-            eprintln!("error: {error}");
+    let (opened, trouble) = match load(path.filter(|_| models.is_none())) {
+        (Some(opened), trouble) => (opened, trouble),
+        (None, trouble) => {
+            trouble.iter().for_each(|words| eprintln!("error: {words}"));
             return ExitCode::from(WRONG_FILE);
         }
     };
+    // On the terminal too: where no window comes, that is all there is.
+    trouble.iter().for_each(|words| eprintln!("error: {words}"));
     if let Some(reason) = missing_display() {
-        eprintln!("error: {}", no_window(&reason));
-        return ExitCode::from(NO_WINDOW);
+        let status = if trouble.is_some() { WRONG_FILE } else { NO_WINDOW };
+        if trouble.is_none() {
+            eprintln!("error: {}", no_window(&reason));
+        }
+        return ExitCode::from(status);
     }
     if let Err(reason) = start_threads() {
         eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})")));
@@ -99,7 +107,8 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     mended.iter().for_each(|words| eprintln!("caution: {words}"));
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
-    match ending(caught(|| run(opened, models, Setup::of_program(), &opening)), opening.get()) {
+    let setup = Setup { trouble, ..Setup::of_program() };
+    match ending(caught(|| run(opened, models, setup, &opening)), opening.get()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
             eprintln!("error: {words}");
@@ -120,10 +129,12 @@ fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result
     }
 }
 
-fn load(path: Option<PathBuf>) -> Result<Opened, FileError> {
-    match path {
-        Some(path) => load_any(&path),
-        None => embedded_example().map(Opened::Dataset),
+/// What the window opens on, and what is wrong with the file that was asked for: then it opens on the example.
+fn load(path: Option<PathBuf>) -> (Option<Opened>, Option<String>) {
+    let found = path.map_or_else(|| embedded_example().map(Opened::Dataset), |path| load_any(&path));
+    match found {
+        Ok(opened) => (Some(opened), None),
+        Err(error) => (embedded_example().map(Opened::Dataset).ok(), Some(error.to_string())),
     }
 }
 
@@ -136,7 +147,9 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
     // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
     let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
     let opening = Arc::clone(opening);
-    let is_unasked = models.is_none() && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
+    let is_unasked = models.is_none()
+        && setup.trouble.is_none()
+        && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
         let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
         let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
@@ -216,6 +229,17 @@ mod tests {
         let words = ending(fault(), Some(&autosave)).unwrap_err();
         assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
         assert!(words.ends_with("every decision was saved"), "{words}");
+    }
+
+    #[test]
+    fn a_file_that_is_wrong_opens_the_example_and_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("broken.json");
+        std::fs::write(&path, "{\"format\": ").unwrap();
+        let (opened, trouble) = load(Some(path));
+        assert!(matches!(opened, Some(Opened::Dataset(loaded)) if loaded.path().is_none()), "the example");
+        assert!(trouble.is_some_and(|words| words.contains("broken.json")));
+        assert!(matches!(load(None), (Some(_), None)));
     }
 
     #[test]

@@ -259,7 +259,7 @@ impl GdcmApp {
         }
         self.state.records.running.retain(|other| *other != job);
         if self.state.records.running.is_empty() && self.state.records.asked > 1 {
-            self.done(format!("identified models of {} conditions", self.state.records.asked));
+            self.done(format!("finished: models of {} conditions identified", self.state.records.asked));
             self.state.records.page = RecordsPage::Conditions;
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {

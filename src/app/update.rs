@@ -39,12 +39,15 @@ impl GdcmApp {
     /// Carries out the commands of one frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let display = &mut self.state.display;
-        let before = (display.hovered.take(), display.hovered_condition.take(), display.curves.cursor.take());
+        let pointed = (display.hovered.take(), display.hovered_condition.take(), display.told.take());
+        let before = (pointed, display.curves.cursor.take());
         for command in commands {
             self.carry_out_one(command);
         }
         let display = &self.state.display;
-        if (&display.hovered, display.hovered_condition, display.curves.cursor) != (&before.0, before.1, before.2) {
+        let ((hovered, condition, told), cursor) = &before;
+        let is_pointed = (&display.hovered, &display.hovered_condition, &display.told) == (hovered, condition, told);
+        if !is_pointed || display.curves.cursor != *cursor {
             self.ctx.request_repaint();
         }
     }
@@ -75,6 +78,7 @@ impl GdcmApp {
             Command::FocusPair(_) => {}
             Command::Hover(model) => display.hovered = Some(model),
             Command::HoverCondition(condition) => display.hovered_condition = Some(condition),
+            Command::Tell(words) => display.told = Some(words),
             Command::Isolate(model) => {
                 display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
             }

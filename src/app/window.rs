@@ -125,7 +125,9 @@ impl GdcmApp {
             title: String::new(),
             requested: None,
         };
-        app.state.on_start_page = app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
+        let begins_there = app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
+        app.state.on_start_page = begins_there && setup.trouble.is_none();
+        setup.trouble.into_iter().for_each(|words| app.notify_error(words));
         app.offer_tour(setup.offers_tour);
         app.look_for_recent();
         Ok(app)

@@ -185,7 +185,10 @@ fn line_ui(
             }
             if !note.is_empty() {
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    ui.add(egui::Label::new(palette.small(note)).truncate()).on_hover_text(note);
+                    // Where there is no room for all of it: "of 19 models".
+                    let fits = text_width(ui, note, SMALL_SIZE) <= ui.available_width();
+                    let shown = if fits { note } else { note.split(", ").next().unwrap_or(note) };
+                    ui.add(egui::Label::new(palette.small(shown)).truncate()).on_hover_text(note);
                 });
             }
         });

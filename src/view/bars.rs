@@ -267,14 +267,15 @@ fn list_ui(ui: &mut Ui, sentences: &[String]) {
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match &state.notice {
-            Some(notice) => {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| match (&state.display.told, &state.notice) {
+            (Some(told), _) => drop(ui.add(Label::new(RichText::new(told).size(SMALL_SIZE)).truncate())),
+            (None, Some(notice)) => {
                 button_ui(ui, Button::new("Dismiss").small(), "", Command::DismissNotice, commands);
-                let color = if notice.kind == NoticeKind::Done { palette.good } else { palette.warning };
+                let color = if notice.kind == NoticeKind::Done { palette.text } else { palette.warning };
                 let text = RichText::new(&notice.text).size(SMALL_SIZE).color(color);
                 ui.add(Label::new(text).truncate()).on_hover_text(&notice.text);
             }
-            None => {
+            (None, None) => {
                 ui.add(Label::new(palette.small(standing_remark(state))).truncate());
             }
         });
@@ -283,16 +284,19 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 
 fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
+    // Green is the dot alone: in words it says that gains and phase are met.
     let (text, color) = match (&state.opening, state.results.is_stale(now), state.results.background.analysis) {
-        (None, ..) if state.results.stopped => (format!("● stopped: {}", state.after_stop()), palette.warning),
-        (Some(name), ..) => (format!("● reading {name} …"), palette.accent),
+        (None, ..) if state.results.stopped => (format!("stopped: {}", state.after_stop()), palette.warning),
+        (Some(name), ..) => (format!("reading {name} …"), palette.accent),
         (None, true, Some((done, total))) if total > 0 => {
-            (format!("● computing, {} % …", 100 * done / total), palette.warning)
+            (format!("computing, {} % …", 100 * done / total), palette.warning)
         }
-        (None, true, _) => ("● computing …".to_owned(), palette.warning),
-        (None, false, _) => ("● up to date".to_owned(), palette.good),
+        (None, true, _) => ("computing …".to_owned(), palette.warning),
+        (None, false, _) => ("up to date".to_owned(), palette.good),
     };
-    let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(color));
+    ui.label(RichText::new("●").size(SMALL_SIZE).color(color));
+    let words = if color == palette.good { palette.dim_text } else { color };
+    let label = ui.label(RichText::new(text).size(SMALL_SIZE).color(words));
     if state.analysis().is_some() {
         label.on_hover_text(format!("The newest analysis took {:.1} ms", state.results.elapsed_ms));
     }

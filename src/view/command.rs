@@ -39,6 +39,8 @@ pub enum Command {
     Hover(ModelId),
     /// Point at a condition; for this frame.
     HoverCondition(ConditionId),
+    /// Say in the status bar what the pointer means in a plot; for this frame.
+    Tell(String),
     /// Show only this model beside the representatives; the same model again shows all.
     Isolate(ModelId),
     /// Bring a plot to the front.

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Key, Modifiers, RichText, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
+use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::{
     BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text, row_text_within, row_ui,
@@ -41,12 +41,12 @@ pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: 
     form.chosen = (form.chosen + down).saturating_sub(up).min(found.len().saturating_sub(1));
     let (chosen, has_moved) = (form.chosen, down + up > 0);
     ui.add_space(4.0);
-    if found.is_empty() {
-        ui.label(RichText::new("No command has these letters").color(palette.dim_text));
-    }
     let mut taken = found.get(chosen).filter(|_| entered).copied();
     // As high whatever is found, so that the field stays in its place while letters are typed.
     ScrollArea::vertical().max_height(HEIGHT).min_scrolled_height(HEIGHT).auto_shrink(false).show(ui, |ui| {
+        if found.is_empty() {
+            ui.label(palette.dim("No command has these letters"));
+        }
         for (row, &place) in found.iter().enumerate() {
             let response = entry_ui(ui, &entries[place], row == chosen, palette);
             if response.clicked() {
@@ -83,7 +83,7 @@ fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
 
 fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
     let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
-    let color = if entry.enabled { palette.text } else { palette.rejected };
+    let color = if entry.enabled { palette.text } else { palette.quiet_text };
     let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut)).unwrap_or_default();
     let keys = row_text(ui, row, -6.0, &keys, SMALL_SIZE, palette.dim_text);
     let room = Room { left: 8.0, right: keys.left() - row.left() - 10.0 };

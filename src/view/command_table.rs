@@ -242,7 +242,7 @@ pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     let is_undefined = state.shown().is_some_and(|shown| shown.comparison.undefined[pair].is_some());
     Entry::new(
         if held { format!("Release {name}") } else { format!("Hold {name} exactly") },
-        "Hold a response exactly, or leave it to the fit",
+        "Hold its net gain exactly, and its delay where one can, or leave both to the fit",
         Edit::Hold(pair, !held).into(),
     )
     .enabled(held || !is_undefined)
@@ -438,7 +438,7 @@ fn model_entries(state: &State) -> Vec<Entry> {
             } else {
                 (format!("Use {bundle} model {name} as representative"), Edit::Pin(id))
             };
-            entry(text, "Whether it represents its bundle whatever the medoid is", edit.into());
+            entry(text, "Whether it is used as representative, whatever the medoid is", edit.into());
         }
     }
     entries

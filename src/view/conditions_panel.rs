@@ -399,19 +399,21 @@ impl Marks {
         }
     }
 
+    /// What is still to do, its state in the schedule and why it has no result: three at most.
     fn sentences(&self) -> Vec<String> {
         let counted = [
-            (self.suggested, "physics models suggested as outliers, not rejected"),
-            (self.unmatched_gains, "held gains that could not be matched"),
-            (self.unmatched_delays, "held delays that could not be matched, besides those that need lead"),
+            (self.suggested, "suggested as outliers, not rejected"),
+            (self.unmatched_gains, "held gains not matched"),
+            (self.unmatched_delays, "held delays not matched (without those that need lead)"),
         ];
         let counted = counted.into_iter().filter(|(count, _)| *count > 0);
-        let counted = counted.map(|(count, words)| format!("{count} {words}"));
+        let counted: Vec<String> = counted.map(|(count, words)| format!("{count} {words}")).collect();
+        let counted = (!counted.is_empty()).then(|| counted.join("; "));
         let held_out = "Held out: analysed, and the schedule is judged by it; right-click ends that";
         let left_out = "Left out of the schedule; right-click includes it";
         let states = [(self.held_out, held_out), (self.left_out, left_out)];
-        let states = states.into_iter().filter(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned());
-        counted.chain(states).chain(self.failure.clone()).collect()
+        let states = states.into_iter().find(|(is_so, _)| *is_so).map(|(_, words)| words.to_owned());
+        counted.into_iter().chain(states).chain(self.failure.clone()).collect()
     }
 }
 

@@ -29,6 +29,8 @@ pub struct Display {
     pub hovered: Option<ModelId>,
     /// The condition that is pointed at, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
+    /// What the pointer means in a plot, in one line: nothing floats over curves.
+    pub told: Option<String>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
     /// The value whose derivation is shown.

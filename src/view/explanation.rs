@@ -22,7 +22,10 @@ pub fn derivation_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, comman
     let Some(asked) = &state.display.asked else { return };
     let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
     match &found {
-        Some(found) => derivation_ui(ui, found, palette, commands),
+        Some(found) => {
+            derivation_ui(ui, found, palette, commands);
+            toggle_costs_ui(ui, state, asked, palette);
+        }
         None => {
             ui.label("There is no such value now");
             ui.label(state.results.absence());
@@ -33,15 +36,15 @@ pub fn derivation_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, comman
 fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &mut Vec<Command>) {
     ui.label(RichText::new(&found.title).font(medium(TITLE_SIZE)));
     ui.add_space(4.0);
-    ui.label(RichText::new(&found.equation).monospace());
+    ui.label(&found.equation);
     ui.add_space(4.0);
     for step in &found.with_numbers {
-        ui.label(RichText::new(step).monospace());
+        ui.label(step);
     }
     ui.add_space(4.0);
     Grid::new("terms of the equation").num_columns(2).min_row_height(14.0).spacing([10.0, 2.0]).show(ui, |ui| {
         for (symbol, meaning) in found.terms() {
-            ui.label(RichText::new(symbol).monospace());
+            ui.label(RichText::new(symbol).size(SMALL_SIZE));
             ui.add(Label::new(palette.small(meaning)).wrap());
             ui.end_row();
         }
@@ -59,11 +62,26 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     });
 }
 
-/// The derivation as lines of text.
-fn text_of(found: &Derivation) -> String {
-    let lines =
-        [found.title.as_str(), &found.equation].into_iter().chain(found.with_numbers.iter().map(String::as_str));
-    let lines = lines.chain(found.rests_on.iter().map(String::as_str)).chain([found.section]);
+/// What holding or freeing the response that is asked about would cost.
+fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
+    let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) = asked else {
+        return;
+    };
+    let costs = if *condition == state.condition().id() { toggle_costs(state, *pair) } else { Vec::new() };
+    if !costs.is_empty() {
+        ui.add_space(4.0);
+        ui.label(palette.small("What holding or freeing it would cost"));
+    }
+    for cost in costs {
+        ui.label(RichText::new(cost).size(SMALL_SIZE));
+    }
+}
+
+/// The derivation as lines of text, the symbols with tabs before what they stand for.
+pub fn text_of(found: &Derivation) -> String {
+    let heads = [&found.title, &found.equation].into_iter().chain(&found.with_numbers).cloned();
+    let terms = found.terms().into_iter().map(|(symbol, meaning)| format!("{symbol}\t{meaning}"));
+    let lines = heads.chain(terms).chain(found.rests_on.iter().cloned()).chain([found.section.to_owned()]);
     lines.collect::<Vec<_>>().join("\n")
 }
 

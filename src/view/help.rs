@@ -124,26 +124,32 @@ const GESTURES: &[(&str, &str)] = &[
     ("right-drag", "zoom to a box"),
     ("Shift+drag", "select the curves that a box touches, to reject or restore them at once"),
     ("double click in a plot", "beside the curves: fit it; on an axis: type its limits"),
+    ("pointing in a plot", "the status line says what is under the pointer"),
     ("right-click in a plot", "what can be done with the curve, or with the frequency there"),
     ("click on a chip", "hide the curves of a role, or show them; Alt: show it alone; Shift: in front"),
     ("1 to 9", "in a plot that has the focus: the same as a click on a chip"),
     ("Arrows, + −, Home", "in a plot that has the focus: move, zoom (Shift: frequencies only), fit"),
     ("Escape", "end the isolation of a model, and a selection"),
     ("drag an end of the band", "move the band of comparison"),
-    ("click on a cell", "show its response; on its box, or twice: hold or release it"),
+    (
+        "click on a cell",
+        "show its response; on its box, or twice: hold or release it: its net gain exactly, its delay where one can",
+    ),
     ("click on a star", "use this model as representative; again: use the medoid"),
     ("right-click", "on a heading: copy or save its table; on a cell or a condition: more"),
 ];
 
-/// Marks in the list of conditions: what is still to do there.
+/// Marks in the list of conditions.
 const MARKS: &[(&str, &str)] = &[
-    ("⚠ 3", "three models are suggested as outliers and not rejected"),
-    ("k 2", "two held gains are not matched"),
     (
-        "τ 1",
-        "one held delay is not matched though a delay could; what needs lead is not counted, for no delay gives it",
+        "⚠",
+        "models are suggested as outliers, a held gain is not matched, or a held delay though a delay could; pointing at the row \
+         counts them",
     ),
-    ("left out", "the condition does not enter the schedule"),
+    ("dot or square", "its altitude and weight: the same mark as in Net gain"),
+    ("cells", "J of each held response: left magnitude, right phase, pale is matched"),
+    ("number struck out", "the condition does not enter the schedule"),
+    ("bar at the left", "it is held out: the schedule is judged by it"),
 ];
 
 /// Every key of the table of commands, the gestures, and the marks.

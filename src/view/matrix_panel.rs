@@ -17,8 +17,7 @@ use super::palette::medium;
 use super::response_card::{card_grid_ui, is_not_reduced};
 use super::{
     BODY_SIZE, Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui,
-    gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui, table_menu_ui, toggle_costs,
-    turn_entry,
+    gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui, table_menu_ui, turn_entry,
 };
 
 /// Height of a cell, at least and at most \[pt\].
@@ -28,7 +27,7 @@ const GAP: f32 = 3.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 28.0;
 const HEADER_HEIGHT: f32 = 20.0;
-const LOCK_SIZE: f32 = 15.0;
+const LOCK_SIZE: f32 = 13.0;
 /// J at which an underline is as long as its cell.
 const FULL_COST: f64 = 60.0;
 /// Every response as a cell, within `room` points of height. A click on the cell chooses the response for the large plot; a click on its box, a double click or
@@ -115,8 +114,6 @@ struct Cell<'a> {
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
     sureness: Sureness<'a>,
-    /// What holding or freeing it would cost, in words; empty until that is known.
-    toggle_costs: Vec<String>,
 }
 
 impl<'a> Cell<'a> {
@@ -131,7 +128,6 @@ impl<'a> Cell<'a> {
             shown: state.shown(),
             state,
             sureness: state.sureness(),
-            toggle_costs: toggle_costs(state, pair),
         }
     }
 
@@ -169,9 +165,9 @@ impl<'a> Cell<'a> {
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
     }
 
-    /// The box that holds or frees it; it is there under the pointer, in the place of the bar of G.
+    /// The box that holds or frees it; it is there under the pointer, at the end of the line of G.
     fn lock_ui(&self, ui: &mut Ui, rect: Rect, is_pointed: bool, palette: &Palette) -> Response {
-        let corner = rect.right_top() + vec2(-LOCK_SIZE - 3.0, 2.0);
+        let corner = rect.right_top() + vec2(-LOCK_SIZE, 1.0);
         let place = Rect::from_min_size(corner, vec2(LOCK_SIZE, LOCK_SIZE));
         let response = ui.interact(place.expand(2.0), ui.scope_id().with(("hold", self.pair)), Sense::click());
         let name = format!("Hold {}", self.name);
@@ -194,8 +190,8 @@ impl<'a> Cell<'a> {
         }
         let hint = match (self.undefined(), self.constrained) {
             (Some(why), _) => format!("{} cannot be held: {}", self.name, why),
-            (_, true) => "Held exactly; click to free it".to_owned(),
-            (_, false) => "Free; click to hold it exactly".to_owned(),
+            (_, true) => "Held: its net gain exactly, its delay where one can; click to free it".to_owned(),
+            (_, false) => "Free; click to hold its net gain exactly, and its delay where one can".to_owned(),
         };
         response.on_hover_text(hint)
     }
@@ -231,17 +227,20 @@ impl<'a> Cell<'a> {
             let (before, after) = (of.uncorrected, of.corrected);
             [[before.magnitude, after.magnitude], [before.phase, after.phase]]
         });
-        let strong = if self.fitted { palette.text } else { palette.rejected };
+        let strong = if self.fitted { palette.text } else { palette.quiet_text };
         let gain_half = self.sureness.half(Scalar::Gain(self.pair)).map(|half| format!("±{:.0}", 100.0 * half));
         let delay_half = self.sureness.half(shown.wanted_delay(self.pair)).map(|half| format!("±{:.0}", s_to_ms(half)));
         let values = [
-            (decimals(gain, 2), medium(BODY_SIZE), gain_half.filter(|_| !is_pointed)),
+            (decimals(gain, 2), medium(BODY_SIZE), gain_half),
             (decimals(s_to_ms(delay_s), 0), FontId::proportional(SMALL_SIZE), delay_half),
         ];
         let lower = rect.top() + 0.5 * rect.height();
         let halves = [rect.with_max_y(lower), rect.with_min_y(lower - 1.0)];
         for (place, (half, (text, font, bar))) in halves.into_iter().zip(values).enumerate() {
-            let line = half.shrink2(vec2(6.0, 0.0)).translate(vec2(0.0, -1.0));
+            let mut line = half.shrink2(vec2(6.0, 0.0)).translate(vec2(0.0, -1.5));
+            if place == 0 && is_pointed {
+                line.max.x = rect.right() - LOCK_SIZE;
+            }
             let value = painted_text(ui, line, 0.0, &text, font, strong);
             if let Some(bar) = bar {
                 let galley = ui.painter().layout_no_wrap(bar, small.clone(), palette.dim_text);
@@ -291,24 +290,18 @@ impl<'a> Cell<'a> {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted { "" } else { ", ignored in the objective" };
         ui.label(RichText::new(format!("{}, {held}{ignored}", self.name)).font(medium(BODY_SIZE)));
-        let Some(shown) = self.shown else { return };
         if let Some(why) = self.undefined() {
             ui.label(format!("No G, no D and no J: {why}"));
             return;
         }
         card_grid_ui(ui, self.state, self.pair, palette);
-        let doubts = shown.doubts.iter().filter(|doubt| doubt.channel.is_of(self.pair));
-        for sentence in doubts.map(|doubt| doubt.words(self.state.dataset())).chain(self.toggle_costs.iter().cloned()) {
-            ui.label(palette.small(sentence));
-        }
-        ui.label(palette.small("click: show it · space: hold or free it · right-click: more"));
     }
 }
 
 /// The part of J before the correction, pale, and after it; orange where that is not less. A tip at its end stands for more than
 /// there is room for.
 fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette) {
-    let y = half.bottom() - 3.5;
+    let y = half.bottom() - 2.5;
     let (left, room) = (half.left() + 4.0, half.width() - 8.0);
     let bar = |cost: f64, color: Color32| {
         let part = (cost / FULL_COST).clamp(0.0, 1.0) as f32;
@@ -320,6 +313,6 @@ fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette
             ui.painter().add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
         }
     };
-    bar(before, palette.line);
-    bar(after, if is_not_reduced(before, after) { palette.warning } else { palette.dim_text });
+    bar(before, palette.quiet_mark);
+    bar(after, if is_not_reduced(before, after) { palette.warning } else { palette.text });
 }

@@ -1,10 +1,13 @@
 //! The bundles of the condition shown: which models are kept, which represents, which are suspect.
 
+use std::collections::BTreeMap;
+
 use egui::{
-    Align, Checkbox, FontId, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align, Checkbox, FontId, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2,
+    vec2,
 };
 
-use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Origin};
+use gdcm_core::dataset::{BundleKind, Model, ModelId, Origin};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{Edit, ExplainTarget};
 
@@ -183,8 +186,7 @@ impl TrimColumns {
     fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model.perturbation().filter(|trim| trim.values().any(|offset| *offset != 0.0))?;
         let offset = |key: &String| trim.get(key).copied().filter(|offset| *offset != 0.0);
-        let text = |offset: f64| format!("{}{}", if offset > 0.0 { "+" } else { "" }, compact(offset));
-        Some(self.keys.iter().map(|key| offset(key).map_or("·".to_owned(), text)).collect())
+        Some(self.keys.iter().map(|key| offset(key).map_or("·".to_owned(), signed_compact)).collect())
     }
 }
 
@@ -272,7 +274,7 @@ impl<'a> ModelRow<'a> {
             commands.push(Command::Hover(self.id.clone()));
         }
         response.context_menu(|ui| self.menu_ui(ui, commands));
-        response.on_hover_ui(|ui| self.tooltip_ui(ui));
+        response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
     }
 
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -339,7 +341,7 @@ impl<'a> ModelRow<'a> {
 
     /// The ratio with its bar, or the order; returns the width taken on the right.
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
-        let dim = if self.kept { palette.text } else { palette.rejected };
+        let dim = if self.kept { palette.text } else { palette.quiet_text };
         if self.set_aside.is_some() {
             row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
             return 60.0;
@@ -367,7 +369,7 @@ impl<'a> ModelRow<'a> {
     /// The offsets of its trim, struck out where it is rejected.
     fn paint_offsets(&self, ui: &Ui, rect: Rect, offsets: &[String], palette: &Palette) {
         for (offset, end) in offsets.iter().zip(TRIM_ENDS) {
-            let color = if !self.kept || offset == "·" { palette.rejected } else { palette.text };
+            let color = if !self.kept || offset == "·" { palette.quiet_text } else { palette.text };
             let upto = rect.with_max_x(rect.left() + end);
             let place = painted_text(ui, upto, -0.01, offset, FontId::proportional(BODY_SIZE), color);
             if !self.kept && offset != "·" {
@@ -377,7 +379,7 @@ impl<'a> ModelRow<'a> {
     }
 
     fn paint_name(&self, ui: &Ui, rect: Rect, value_width: f32, palette: &Palette) {
-        let color = if self.kept { palette.text } else { palette.rejected };
+        let color = if self.kept { palette.text } else { palette.quiet_text };
         let left = rect.left() + 42.0;
         let room = rect.right() - value_width - left;
         let name = elided_among(ui, self.name, self.neighbours, room, BODY_SIZE);
@@ -389,37 +391,46 @@ impl<'a> ModelRow<'a> {
         ui.painter().galley(pos2(left, rect.center().y - 0.5 * galley.size().y), galley, color);
     }
 
-    fn tooltip_ui(&self, ui: &mut Ui) {
-        ui.label(RichText::new(&self.model.name).strong());
-        let trim = self.model.perturbation().map(|perturbation| {
-            let offsets = perturbation.iter().filter(|(_, value)| **value != 0.0);
-            let offsets: Vec<String> = offsets.map(|(name, value)| format!("{name} {value:+}")).collect();
-            if offsets.is_empty() { "at the trim of the condition".to_owned() } else { offsets.join(", ") }
+    /// Its name over four aligned rows; all else is behind [`QUESTION`](super::QUESTION) in the menu.
+    fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
+        ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
+        Grid::new("model").num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
+            for (name, value) in self.tooltip_rows() {
+                ui.label(palette.dim(name));
+                ui.label(value);
+                ui.end_row();
+            }
         });
-        let timing = match &self.model.dynamics {
-            Dynamics::StateSpace(matrices) => Some(matrices.timing()).filter(|timing| !timing.is_plain()),
-            _ => None,
-        };
-        let verdict = if self.is_suspect() { ": suggested as an outlier" } else { "" };
-        let sentences = [
-            trim,
-            method(self.model).map(|method| format!("identified by {method}")),
-            self.model.order().map(|order| format!("{order} states")),
-            timing.map(|timing| timing.words()),
-            self.set_aside.clone(),
-            self.reason.as_ref().map(|reason| format!("rejected: {reason}")),
-            self.model.source.as_ref().map(|source| format!("from {}", source.words())),
-            self.ratio.map(|ratio| format!("discontinuity ratio {ratio:.3}{verdict}")),
-            self.score.map(|score| format!("mean distance to the other kept models {score:.3}")),
+    }
+
+    fn tooltip_rows(&self) -> Vec<(&'static str, String)> {
+        let verdict = if self.is_suspect() { ", suggested as an outlier" } else { "" };
+        let out = self.set_aside.clone().map(|why| ("set aside", why));
+        let rows = [
+            self.model.perturbation().map(|trim| ("trim", trim_words(trim))),
+            method(self.model).map(|method| ("identified by", method.to_owned())),
+            self.ratio.map(|ratio| ("discontinuity ratio", format!("{ratio:.3}{verdict}"))),
+            self.score.map(|score| ("mean distance", format!("{score:.3} to the others that are kept"))),
+            out.or(self.reason.clone().map(|reason| ("rejected", reason))),
         ];
-        for sentence in sentences.into_iter().flatten() {
-            ui.label(sentence);
-        }
+        rows.into_iter().flatten().collect()
     }
 
     fn is_suspect(&self) -> bool {
         self.ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO)
     }
+}
+
+/// "airspeed_kt +5, roll_deg −3".
+fn trim_words(trim: &BTreeMap<String, f64>) -> String {
+    let offsets = trim.iter().filter(|(_, offset)| **offset != 0.0);
+    let offsets: Vec<String> = offsets.map(|(name, offset)| format!("{name} {}", signed_compact(*offset))).collect();
+    if offsets.is_empty() { "that of the condition".to_owned() } else { offsets.join(", ") }
+}
+
+/// "+5", "−3".
+fn signed_compact(value: f64) -> String {
+    format!("{}{}", if value > 0.0 { "+" } else { "" }, compact(value))
 }
 
 /// The names without the method that every model of an identified bundle repeats: without "CT-PBSID" where some are of "CT-PBSID" and the
@@ -447,7 +458,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use gdcm_core::dataset::StateSpace;
+    use gdcm_core::dataset::{Dynamics, StateSpace};
 
     #[test]
     fn names_are_shown_without_the_method_that_all_of_them_repeat() {

@@ -1,9 +1,8 @@
 //! The table of models, and the list of what is to be completed.
 
-use egui::text::{LayoutJob, TextFormat, TextWrapping};
-use egui::{Align, Button, Color32, FontId, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2};
+use egui::{Align, Button, Color32, FontId, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::{Command, Palette, ROW_HEIGHT, SMALL_SIZE, named, named_switch};
+use crate::view::{Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text};
 use gdcm_core::assembly::Part;
 use gdcm_core::units::number;
 
@@ -77,8 +76,10 @@ pub(super) fn table_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette,
     let area = ScrollArea::vertical().id_salt("models that are imported").auto_shrink(false);
     area.show_rows(ui, ROW_HEIGHT, order.len(), |ui, rows| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        for &index in &order[rows] {
-            let part = &assembly.assembly().parts()[index];
+        let part_at = |place: usize| order.get(place).map(|index| &assembly.assembly().parts()[*index]);
+        for place in rows {
+            let (index, Some(part)) = (order[place], part_at(place)) else { continue };
+            let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| part_at(place?));
             let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::click());
             let is_shown = assembly.selected == index;
             let response = named_switch(response, Role::Row, is_shown, format!("Model {}", part.found.key()));
@@ -88,7 +89,7 @@ pub(super) fn table_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette,
                 () => Color32::TRANSPARENT,
             };
             ui.painter().rect_filled(rect, 2.0, fill);
-            paint_cells(ui, rect, part, incomplete.contains(&index), palette);
+            paint_cells(ui, rect, (part, neighbours), incomplete.contains(&index), palette);
             if response.clicked() {
                 commands.push(AssemblingCommand::Select(index).into());
             }
@@ -96,23 +97,29 @@ pub(super) fn table_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette,
     });
 }
 
-fn paint_cells(ui: &Ui, row: Rect, part: &Part, is_incomplete: bool, palette: &Palette) {
+/// The texts of a row; what is cut tells it from the rows beside it.
+fn paint_cells(
+    ui: &Ui,
+    row: Rect,
+    (part, neighbours): (&Part, [Option<&Part>; 2]),
+    is_incomplete: bool,
+    palette: &Palette,
+) {
     let mut left = row.left();
     for (index, column) in COLUMNS.iter().enumerate() {
         let (text, room) = (column.text(part), row.width() * column.share);
         let is_marked = is_incomplete && index == FILE;
         let color = match () {
             () if text == "?" => palette.warning,
-            () if part.row.left_out => palette.rejected,
+            () if part.row.left_out => palette.quiet_text,
             () if is_marked => palette.warning,
             () => palette.text,
         };
         let text = if is_marked { format!("⚠ {text}") } else { text };
-        let format = TextFormat::simple(FontId::proportional(SMALL_SIZE), color);
-        let mut job = LayoutJob::single_section(text, format);
-        job.wrap = TextWrapping::truncate_at_width(room - 6.0);
-        let galley = ui.painter().layout_job(job);
-        ui.painter().galley(pos2(left + 3.0, row.center().y - 0.5 * galley.size().y), galley, color);
+        let others = neighbours.map(|other| other.map(|other| column.text(other)));
+        let text = elided_among(ui, &text, others.each_ref().map(Option::as_deref), room - 6.0, SMALL_SIZE);
+        let place = Rect::from_x_y_ranges(left + 3.0..=left + room, row.y_range());
+        painted_text(ui, place, 0.0, &text, FontId::proportional(SMALL_SIZE), color);
         left += room;
     }
 }
@@ -130,7 +137,7 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
         1 => "1 item to complete".to_owned(),
         count => format!("{count} items to complete"),
     };
-    ui.label(RichText::new(heading).strong().color(if problems.is_empty() { palette.good } else { palette.warning }));
+    ui.label(RichText::new(heading).strong().color(if problems.is_empty() { palette.text } else { palette.warning }));
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
         for (part, words) in problems.iter().take(MOST_LINES) {
             let text = RichText::new(words).size(SMALL_SIZE).color(palette.text);

@@ -20,7 +20,7 @@ use super::legend::{Chip, ChipEvent, Chips, RoleChip, role_chips};
 use super::navigation::pressed_digit;
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
-use super::readout::{Readout, STRIP_HEIGHT, curve_tooltip_ui, readout_strip_ui};
+use super::readout::{Readout, STRIP_HEIGHT, readout_strip_ui};
 use super::rule::{BodeBand, ReferenceLine};
 use crate::view::controls::{elided, named, painted_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
@@ -121,6 +121,12 @@ pub struct InvalidRegion {
 static NO_ROLES: BTreeSet<Role> = BTreeSet::new();
 
 impl<'a> BodeScene<'a> {
+    /// "+19.4 dB": how far the leads raise the magnitude where the curves end.
+    fn price_words(&self) -> Option<String> {
+        let [with, without] = self.invalid?.ends_db?;
+        Some(format!("{} dB", signed(with - without, 1)))
+    }
+
     /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
     pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {
@@ -248,12 +254,12 @@ fn chips_ui(
         roles.iter_mut().filter(|chip| chip.role == of).for_each(|chip| chip.lit = true);
     }
     let plot = scene.quantity.label_suffix();
-    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
-    let overflows = chips.width(ui) > rect.width();
-    if overflows {
-        roles.iter_mut().for_each(RoleChip::leave_name_out);
+    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips, is_tight: false };
+    let is_tight = chips.width(ui) > rect.width();
+    if is_tight {
+        roles.iter_mut().for_each(RoleChip::shorten);
     }
-    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips };
+    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips, is_tight };
     let (height, event) = chips.ui(ui, rect, palette);
     events.extend(event.map(|event| match event {
         ChipEvent::Toggled(role) => BodeEvent::RoleToggled(role),
@@ -292,11 +298,6 @@ fn panes_ui(
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
         drag_band(ui, pane, scene, view, palette, events);
-        if let Some(Pointing { pane: pointed, hit: Some(hit), .. }) = pointing
-            && pointed == pane
-        {
-            curve_tooltip_ui(&response, scene, &scene.curves[hit.curve], hit.omega, palette);
-        }
         ask_for_menu(&response, scene, pointing, view);
         has_focus |= response.has_focus();
         menu_ui(&response, scene, view, events, palette);
@@ -362,7 +363,6 @@ impl Places {
 /// Where the pointer is in the plots, as they were drawn in the last frame.
 #[derive(Clone, Copy, Debug)]
 struct Pointing {
-    pane: Pane,
     log_omega: f64,
     hit: Option<Hit>,
 }
@@ -377,7 +377,7 @@ impl Pointing {
             let log_omega = transform.value_from_position(pointer).x;
             // While something is dragged, curves passing under the pointer are not meant.
             let hit = if is_dragging { None } else { nearest(scene.curves, pane, pointer, transform) };
-            Some(Self { pane, log_omega, hit })
+            Some(Self { log_omega, hit })
         })
     }
 }
@@ -456,7 +456,13 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
         if let Some(note) = scene.notes[index] {
             let color = if note.warns { palette.warning } else { palette.dim_text };
             let verdict = painted_text(ui, line, -0.01, &note.verdict, FontId::proportional(BODY_SIZE), color);
-            let rest = line.with_max_x(verdict.left() - 12.0);
+            let mut rest = line.with_max_x(verdict.left() - 12.0);
+            // Beside the bracket where there is a margin, else here.
+            if let Some(price) = scene.price_words().filter(|_| pane == Pane::Magnitude && !scene.names_curves) {
+                let words = format!("leads {price}");
+                let place = painted_text(ui, rest, -0.01, &words, FontId::proportional(BODY_SIZE), palette.warning);
+                rest = rest.with_max_x(place.left() - 12.0);
+            }
             let shown = elided(ui, &note.cost, rest.right() - unit.right() - 8.0, BODY_SIZE);
             painted_text(ui, rest, -0.01, &shown, FontId::proportional(BODY_SIZE), palette.dim_text);
         } else if scene.stale && index == 0 {
@@ -532,7 +538,7 @@ fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette
     if let (Pane::Magnitude, Some([with, without])) = (pane, scene.invalid.and_then(|invalid| invalid.ends_db)) {
         let at = transform.position_from_point(&PlotPoint::new(0.0, 0.5 * (with + without)));
         let y = at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0);
-        ends.push((y, format!("{} dB", signed(with - without, 1)), palette.warning));
+        ends.extend(scene.price_words().map(|words| (y, words, palette.warning)));
     }
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     spread(&mut ends, frame.bottom() - 5.0);

@@ -5,7 +5,6 @@ use egui::{
     UiBuilder, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{Axis, LineStyle, PlotPoint, PlotTransform, PlotUi, Span, VLine};
-use gdcm_core::units::telling;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
@@ -80,9 +79,6 @@ pub(super) fn pane_ui(
     strips_ui(ui, scene.strips, &shown.transform, palette);
     if let (Pane::Magnitude, Some(invalid)) = (pane, scene.invalid) {
         invalid_strip_ui(ui, (scene.band.1, invalid), &shown.transform, palette);
-    }
-    if pane == Pane::Phase {
-        crossing_names_ui(ui, scene.crossings, &shown.transform, palette);
     }
     let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
     shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
@@ -266,19 +262,6 @@ fn draw_cursors<'a>(
     }
 }
 
-/// Names of marked frequencies over the lower edge, one above another: they may be close to each other.
-fn crossing_names_ui(ui: &Ui, crossings: &[(&str, f64)], transform: &PlotTransform, palette: &Palette) {
-    let (frame, font) = (*transform.frame(), FontId::proportional(SMALL_SIZE));
-    for (line, (name, omega)) in crossings.iter().enumerate() {
-        let x = transform.position_from_point(&PlotPoint::new(omega.log10(), 0.0)).x;
-        if frame.x_range().contains(x) {
-            let at = pos2(x + 3.0, frame.bottom() - 2.0 - 14.0 * line as f32);
-            let words = format!("{name} {}", telling(*omega, 2));
-            ui.painter().with_clip_rect(frame).text(at, Align2::LEFT_BOTTOM, words, font.clone(), palette.text);
-        }
-    }
-}
-
 /// The wheel zooms about the pointer, and so do two fingers; the sideways wheel only along the frequency axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if let Some((Turn { both, sideways }, pointer)) = turned(ui.ctx(), response) {
@@ -390,16 +373,13 @@ fn paint(
     }
     let text = unit.readout(end.of(band));
     let galley = painter.layout_no_wrap(text, caption_font(), palette.text);
-    // Inside the band, level with the pointer.
-    let pointer = response.interact_pointer_pos().or(response.hover_pos());
-    let y = pointer.map_or(frame.center().y, |pointer| pointer.y).clamp(frame.top() + 12.0, frame.bottom() - 12.0);
-    let (align, offset) = match end {
-        End::Lower => (Align2::LEFT_CENTER, 8.0),
-        End::Upper => (Align2::RIGHT_CENTER, -8.0),
-    };
-    let place = align.anchor_size(pos2(x + offset, y), galley.size() + vec2(10.0, 4.0));
+    // In the line over the plot: not over its curves.
+    let size = galley.size() + vec2(10.0, 2.0);
+    let left = (x - 0.5 * size.x).clamp(frame.left(), (frame.right() - size.x).max(frame.left()));
+    let place = Rect::from_min_size(pos2(left, frame.top() - size.y - 2.0), size);
+    let painter = ui.painter();
     painter.rect(place, 3.0, palette.raised, Stroke::new(1.0, palette.line), StrokeKind::Inside);
-    painter.galley(place.min + vec2(5.0, 2.0), galley, palette.text);
+    painter.galley(place.min + vec2(5.0, 1.0), galley, palette.text);
 }
 
 #[cfg(test)]

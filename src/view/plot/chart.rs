@@ -10,6 +10,7 @@ use egui_plot::{
     Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotImage, PlotPoint, PlotPoints, PlotUi, Points, Span, VLine,
 };
 
+use super::Range;
 use super::axes::{
     FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot,
 };
@@ -18,10 +19,13 @@ use super::navigation::{Turn, turned};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
-const VALUE_AXIS_WIDTH: f32 = 46.0;
+/// As wide as the longest number: frames of charts below one another stand in line \[pt\].
+const VALUE_AXIS_WIDTH: f32 = 54.0;
 const RIGHT_MARGIN: f32 = 8.0;
 const NOTE_GAP: f32 = 8.0;
-const TICK_GAP: f64 = 60.0;
+/// Space at either end of the horizontal axis, as a part of it.
+const EDGE: f64 = 0.01;
+const TICK_GAP: f64 = 50.0;
 /// How far from a line the drawn one may be \[pt\].
 const TOLERANCE: f64 = 0.1;
 /// No screen is wider \[pixels\].
@@ -166,7 +170,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
         empty_chart(id, plot_rect, chart, palette).show(ui, |plot| {
             draw(plot, chart, palette);
-            zoom_by_scrolling(plot, chart.fits_values);
+            zoom_by_scrolling(plot, chart);
             if let Some(group) = chart.group.filter(|_| chart.chooses) {
                 choose_by_dragging(plot, group);
             }
@@ -224,12 +228,21 @@ pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
 }
 
 /// The wheel zooms about the pointer, and so do two fingers.
-fn zoom_by_scrolling(plot: &mut PlotUi<'_>, fits_values: bool) {
+fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
+    let fits_values = chart.fits_values;
     if let Some((turn, pointer)) = turned(plot.ctx(), plot.response()) {
         let Turn { both, sideways } = turn;
         let factor = if fits_values { vec2(turn.along_one_axis(), 1.0) } else { vec2(both.x * sideways, both.y) };
         let fixed = plot.plot_from_screen(pointer);
-        plot.zoom_bounds(factor, fixed);
+        let (bounds, ends) = (plot.plot_bounds(), ends(chart));
+        let zoomed = |axis: usize, factor: f32, fixed: f64| {
+            let Range { min, max } =
+                Range::new(bounds.min()[axis], bounds.max()[axis]).zoomed(f64::from(factor), fixed);
+            let [least, most] = ends[axis].map_or([min, max], |ends| [min.max(ends.min), max.min(ends.max)]);
+            (least < most).then_some(least..=most)
+        };
+        zoomed(0, factor.x, fixed.x).into_iter().for_each(|range| plot.set_plot_bounds_x(range));
+        zoomed(1, factor.y, fixed.y).into_iter().for_each(|range| plot.set_plot_bounds_y(range));
         plot.set_auto_bounds(Vec2b::new(false, fits_values));
         // What the chart lies in does not scroll by it too.
         plot.ctx().input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
@@ -237,6 +250,25 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, fits_values: bool) {
         // Dragging has ended the fit.
         plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
     }
+}
+
+/// How far the wheel looks: to the ends of the times, a decade beyond other data.
+fn ends(chart: &Chart<'_>) -> [Option<Range>; 2] {
+    /// So many widths of the data beyond each of their ends.
+    const BEYOND: f64 = 4.5;
+    let lines = || chart.lines.iter().flat_map(|line| line.points.iter().copied());
+    let points = || lines().chain(chart.marks.iter().flat_map(|marks| marks.points.iter().map(|[x, y, _]| [*x, *y])));
+    let image = |of: fn(&ChartImage) -> [f64; 2]| chart.image.iter().flat_map(of);
+    let across = points().map(|point| point[0]).chain(image(|image| image.across));
+    let across = Range::of(across.map(|value| chart.across.place(value)));
+    let values = Range::of(points().map(|point| point[1]).chain(image(|image| image.omega.map(f64::log10))));
+    let is_of_times = chart.fits_values || chart.image.is_some();
+    let across = across.map(|range| match chart.across {
+        ChartAxis::Frequency(_) => Range::new(range.min - 1.0, range.max + 1.0),
+        ChartAxis::Linear if is_of_times => range.with_margin(EDGE, 0.0),
+        ChartAxis::Linear => range.with_margin(BEYOND, 0.0),
+    });
+    [across, values.map(|range| range.with_margin(BEYOND, 0.0))]
 }
 
 fn count(chart: &Chart<'_>) -> usize {
@@ -255,7 +287,7 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
         .allow_drag(if chart.chooses { Vec2b::FALSE } else { Vec2b::new(true, !chart.fits_values) })
         .allow_axis_zoom_drag(true)
         .allow_double_click_reset(true)
-        .set_margin_fraction(egui::vec2(0.01, 0.08))
+        .set_margin_fraction(vec2(EDGE as f32, 0.08))
         .width(rect.width())
         .height(rect.height())
         .y_grid_spacer(values.spacer())

@@ -120,7 +120,7 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
         true => ("Restore model", "Put the model back into its bundle"),
         false => ("Reject model", "Take the model out of its bundle"),
     };
-    let pin = ("Let model represent", "Let this model represent its bundle, whatever the medoid is");
+    let pin = ("Use as representative", "Use this model as the representative of its bundle, whatever the medoid is");
     let isolate = ("Isolate model", "Only this model beside the representatives, or all again");
     let hide = ("Hide curve", "Do not draw this model; it counts all the same");
     let wishes = [

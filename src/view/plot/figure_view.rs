@@ -19,7 +19,6 @@ use super::axes::{
 use super::canvas::{Canvas, LETTERS_PT, area};
 use super::curve_menu::{NamedFigure, Questions};
 use super::navigation::turned;
-use super::readout::tooltip_ui;
 use super::tiles::{Tiles, tiles_ui};
 use crate::view::palette::{Palette, SMALL_SIZE, medium};
 
@@ -35,6 +34,8 @@ const VALUE_AXIS_WIDTH: f32 = 38.0;
 const UNIT_MARGIN: f32 = 14.0;
 /// Least distance between the ticks of an axis \[pt\].
 const TICK_GAP: f64 = 26.0;
+/// The same in a low plot \[pt\].
+const COMPACT_TICK_GAP: f64 = 17.0;
 /// How far from a dot the pointer may be to mean it \[pt\].
 const PICK_RADIUS: f32 = 10.0;
 /// Radius of the ring around what is in focus, or pointed at \[pt\].
@@ -56,8 +57,10 @@ pub trait FigureWords {
         None
     }
 
-    /// What pointing at a mark says.
-    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, at: [f64; 2]);
+    /// What pointing at a mark says, in one line; none where nothing is said.
+    fn pointed(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
+        None
+    }
 
     /// The figures that can be asked about at a mark.
     fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
@@ -97,6 +100,8 @@ pub struct FigureScene<'a> {
 pub enum FigureEvent {
     /// The pointer means this.
     Pointed(MarkId),
+    /// What it means, in words.
+    Told(String),
     /// It was clicked in this plot, with these keys held.
     Clicked(usize, MarkId, Modifiers),
     /// How a figure was computed is asked.
@@ -222,10 +227,10 @@ pub fn figure_within_ui(
             let questions = pointed.as_ref().map(|(id, _)| words.questions(index, id)).unwrap_or_default();
             events.extend(view.questions.ui(&response, &questions).map(FigureEvent::Asked));
             let Some((id, at)) = pointed else { return };
-            tooltip_ui(&response, |ui| words.pointed_ui(ui, index, &id, at));
             view.hovered = Some(id.clone());
             view.pointed_at = Some(at);
             events.push(FigureEvent::Pointed(id.clone()));
+            events.extend(words.pointed(index, &id, at).map(FigureEvent::Told));
             if response.clicked() {
                 events.push(FigureEvent::Clicked(index, id, ui.input(|input| input.modifiers)));
             }
@@ -332,7 +337,8 @@ fn plot_ui(
         }
     }
     if scene.zooms {
-        kept.navigate(&response, pointed.is_some(), [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)]);
+        let whole = [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)];
+        kept.navigate(&response, pointed.is_some(), (whole, ends(panel, whole)));
     }
     (response, pointed)
 }
@@ -429,13 +435,19 @@ impl PlotView {
     }
 
     /// The wheel zooms about the pointer, dragging pans, a double click beside the dots shows all.
-    fn navigate(&mut self, response: &Response, is_pointed: bool, whole: [Range; 2]) {
+    fn navigate(&mut self, response: &Response, is_pointed: bool, (whole, ends): ([Range; 2], [Range; 2])) {
         let Some(transform) = self.transform else { return };
         let (min, max) = (transform.bounds().min(), transform.bounds().max());
         let mut shown = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
         if let Some((turn, pointer)) = turned(&response.ctx, response) {
             let (factor, fixed) = (f64::from(turn.along_one_axis()), transform.value_from_position(pointer));
-            shown = [shown[0].zoomed(factor, fixed.x), shown[1].zoomed(factor, fixed.y)];
+            let zoomed = [shown[0].zoomed(factor, fixed.x), shown[1].zoomed(factor, fixed.y)];
+            let within = [0, 1].map(|axis| Range {
+                min: zoomed[axis].min.max(ends[axis].min),
+                max: zoomed[axis].max.min(ends[axis].max),
+            });
+            // Where all of it was dragged beyond the ends, it stays.
+            shown = [0, 1].map(|axis| if within[axis].width() > 0.0 { within[axis] } else { shown[axis] });
             response.ctx.request_repaint();
         }
         let limited = |axis: usize| shown[axis].limited(Range::new(LEAST_WIDTH, FARTHEST * whole[axis].width()));
@@ -447,6 +459,17 @@ impl PlotView {
             response.ctx.request_repaint();
         }
     }
+}
+
+/// How far the wheel looks: to the ends of the times, a decade beyond other data.
+fn ends(panel: &Panel, [across, values]: [Range; 2]) -> [Range; 2] {
+    let beyond = |range: Range| range.with_margin(0.5 * (FARTHEST - 1.0), LEAST_WIDTH);
+    let across = match panel.x.scale {
+        Scale::Logarithmic => Range::new(across.min - 1.0, across.max + 1.0),
+        Scale::Linear | Scale::Degrees if panel.x.label.ends_with("[s]") => across,
+        Scale::Linear | Scale::Degrees => beyond(across),
+    };
+    [across, beyond(values)]
 }
 
 /// Places along the horizontal axis of the screen, which has logarithms where that of the panel is logarithmic.
@@ -474,7 +497,9 @@ fn frame<'a>(
     palette: &Palette,
 ) -> Frame<'a> {
     let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
-    let (is_named, values) = (!names.is_empty(), Ticks::Decimal(TICK_GAP));
+    // Low plots have as many numbers as have room.
+    let gap = if scene.is_compact { COMPACT_TICK_GAP } else { TICK_GAP };
+    let (is_named, values) = (!names.is_empty(), Ticks::Decimal(gap));
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
     let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
     let count = names.len();

@@ -12,8 +12,9 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 const HEIGHTS: [f32; 2] = [22.0, 27.0];
 /// Between two chips \[pt\].
 const GAP: f32 = 5.0;
-/// Length of a sample of a curve \[pt\].
-const SAMPLE: f32 = 18.0;
+/// Length of a sample of a curve, and where there is little room; between it and the words \[pt\].
+const SAMPLES: [f32; 2] = [18.0, 12.0];
+const SAMPLE_GAP: f32 = 6.0;
 /// Space at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
 /// Longest name of a single model shown beside its role, in characters.
@@ -32,10 +33,13 @@ pub(super) struct RoleChip {
 }
 
 impl RoleChip {
-    /// Leaves the name of a single model or variant out of what the chip says.
-    pub(super) fn leave_name_out(&mut self) {
-        if matches!(self.role, Role::Representative | Role::Variant) {
-            self.text = self.role.name().to_owned();
+    /// Leaves the name of a single model or variant out of what the chip says, and shortens the longest words.
+    pub(super) fn shorten(&mut self) {
+        match self.role {
+            Role::Representative => "repr.".clone_into(&mut self.text),
+            Role::Variant => self.role.name().clone_into(&mut self.text),
+            Role::WithoutLeads => "no leads".clone_into(&mut self.text),
+            _ => {}
         }
     }
 }
@@ -99,6 +103,7 @@ pub(super) enum ChipEvent {
 }
 
 /// All chips of a plot.
+#[derive(Clone, Copy)]
 pub(super) struct Chips<'a> {
     /// What tells them from those of other plots.
     pub(super) plot: &'a str,
@@ -106,6 +111,8 @@ pub(super) struct Chips<'a> {
     /// Whether bands are drawn; none where there are no bands.
     pub(super) bands: Option<bool>,
     pub(super) states: &'a [Chip],
+    /// Whether samples and words are short, where there is little room.
+    pub(super) is_tight: bool,
 }
 
 impl Chips<'_> {
@@ -115,14 +122,16 @@ impl Chips<'_> {
             let font = FontId::proportional(SMALL_SIZE);
             ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
         };
-        let bands = self.bands.map(|_| BANDS);
-        let roles = self.roles.iter().map(|chip| chip.text.as_str()).chain(bands).map(|name| text(name) + SAMPLE + 6.0);
+        let (bands, sample) = (self.bands.map(|_| self.bands_text()), SAMPLES[usize::from(self.is_tight)]);
+        let names = self.roles.iter().map(|chip| chip.text.as_str()).chain(bands);
+        let roles = names.map(|name| text(name) + sample + SAMPLE_GAP);
         roles.chain(self.states.iter().map(|chip| text(&chip.text))).sum::<f32>() - GAP
     }
 
     /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<ChipEvent>) {
-        let mut row = Row { area, corner: area.min, event: None };
+        let sample = SAMPLES[usize::from(self.is_tight)];
+        let mut row = Row { area, corner: area.min, sample, event: None };
         for chip in self.roles {
             let name = format!("Show {}{}", chip.role.name(), self.plot);
             let sample = Some((chip.look, chip.shown));
@@ -141,7 +150,7 @@ impl Chips<'_> {
         if let Some(shown) = self.bands {
             let style = CurveStyle { color: palette.identified.gamma_multiply(0.45), width: 7.0, ..BAND_SAMPLE };
             let name = format!("Show the band of 95 %{}", self.plot);
-            let response = row.chip_ui(ui, (BANDS, &name), (Some((style, shown)), false), palette);
+            let response = row.chip_ui(ui, (self.bands_text(), &name), (Some((style, shown)), false), palette);
             if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
                 row.event = Some(ChipEvent::Bands(!shown));
             }
@@ -156,10 +165,12 @@ impl Chips<'_> {
         let height = if is_empty { 0.0 } else { row.corner.y - area.top() + HEIGHTS[1] };
         (height, row.event)
     }
-}
 
-/// What the chip of the bands says.
-const BANDS: &str = "band of 95 %";
+    /// What the chip of the bands says.
+    fn bands_text(&self) -> &'static str {
+        if self.is_tight { "95 %" } else { "band of 95 %" }
+    }
+}
 
 const BAND_SAMPLE: CurveStyle =
     CurveStyle { color: Color32::TRANSPARENT, width: 0.0, dash: gdcm_files::figure::Dash::Solid, length: 0.0 };
@@ -168,6 +179,8 @@ const BAND_SAMPLE: CurveStyle =
 struct Row {
     area: Rect,
     corner: egui::Pos2,
+    /// Length of a sample \[pt\].
+    sample: f32,
     event: Option<ChipEvent>,
 }
 
@@ -183,7 +196,7 @@ impl Row {
         let is_shown = sample.is_none_or(|(_, shown)| shown);
         let color = if is_shown { palette.text } else { palette.dim_text };
         let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(SMALL_SIZE), color);
-        let before = if sample.is_some() { SAMPLE + 6.0 } else { 0.0 };
+        let before = if sample.is_some() { self.sample + SAMPLE_GAP } else { 0.0 };
         let size = vec2(galley.size().x + before + 2.0 * PAD, HEIGHTS[0]);
         if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
             self.corner = pos2(self.area.left(), self.corner.y + HEIGHTS[1]);
@@ -225,7 +238,7 @@ impl Row {
         let look = if is_hidden { CurveStyle { color: look.color.gamma_multiply(0.5), ..look } } else { look };
         let (left, middle) = (place.left() + PAD, place.center().y);
         let mut shapes = Vec::new();
-        look.add_shapes(vec![pos2(left, middle), pos2(left + SAMPLE, middle)], &mut shapes);
+        look.add_shapes(vec![pos2(left, middle), pos2(left + self.sample, middle)], &mut shapes);
         ui.painter().extend(shapes);
     }
 }

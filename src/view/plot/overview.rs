@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align2, Button, Color32, CursorIcon, FontId, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
-    Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder,
+    Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_plot::PlotPoint;
 use gdcm_core::dataset::Pair;
@@ -15,6 +15,7 @@ use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, model_wishes_ui};
 use super::picking::nearest;
 use super::sketch::Sketch;
+use crate::view::controls::{elided, painted_text};
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 const HEADER: Vec2 = vec2(52.0, 22.0);
@@ -23,7 +24,8 @@ const GAP: f32 = 4.0;
 const MAGNITUDE_PART: f32 = 0.58;
 /// Cells smaller than this have no texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-const CELL_FONT: FontId = FontId::proportional(10.0);
+/// Height of the line of text over the curves of a cell \[pt\].
+const CELL_HEAD: f32 = 16.0;
 
 /// One response in the overview.
 #[derive(Clone, Debug)]
@@ -62,6 +64,8 @@ pub enum OverviewEvent {
     PairClicked(Pair),
     /// The pointer means a curve.
     Hovered(CurveId),
+    /// What the pointer means, in words.
+    Told(String),
     /// A curve was clicked with Alt held.
     Isolated(CurveId),
     /// Something was chosen in the menu of a curve.
@@ -128,8 +132,10 @@ pub fn overview_ui(
         for cell in scene.cells {
             let place = table.cell(cell.pair);
             view.places.push((cell.pair, place));
-            let response = cell_ui(ui, scene, (cell, place), view, log_omega, palette);
-            events.extend(cell_events(&response, cell, view));
+            let title = title(scene, cell.pair);
+            let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
+            let response = cell_ui(ui, scene, (cell, place, &name), view, log_omega, palette);
+            events.extend(cell_events((&response, &name), cell, view));
         }
     });
     ui.advance_cursor_after_rect(rect);
@@ -174,42 +180,54 @@ fn headers_ui(ui: &mut Ui, scene: &OverviewScene<'_>, view: &mut OverviewView, t
 fn cell_ui(
     ui: &Ui,
     scene: &OverviewScene<'_>,
-    (cell, place): (&OverviewCell<'_>, Rect),
+    (cell, place, name): (&OverviewCell<'_>, Rect, &str),
     view: &mut OverviewView,
     log_omega: Range,
     palette: &Palette,
 ) -> Response {
     let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
-    let title = title(scene, cell.pair);
-    let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name.clone()));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name));
     if ui.is_rect_visible(place) {
         paint_frame(ui, cell, place, response.hovered() || response.has_focus(), palette);
         let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
-        for (pane, rect) in pane_rects(place.shrink(2.0), view.show_phase) {
+        let inner = place.shrink(2.0);
+        let has_texts = place.width() >= LEAST_WITH_TEXT.x && place.height() >= LEAST_WITH_TEXT.y;
+        let head = inner.with_max_y(inner.top() + if has_texts { CELL_HEAD } else { 0.0 });
+        let mut ranges = Vec::new();
+        for (pane, rect) in pane_rects(inner.with_min_y(head.bottom()), view.show_phase) {
             paint_band(&painter, rect, scene.band, log_omega, palette);
             let sketch = view.sketches.entry((cell.pair, pane)).or_default();
             sketch.paint(&painter, cell.curves, (pane, rect), log_omega, palette);
-            let range = sketch.range_text(pane);
-            if has_texts(place) && !range.is_empty() {
-                // For want of an axis.
-                let corner = rect.left_bottom() + vec2(3.0, -2.0);
-                paint_text(&painter, corner, Align2::LEFT_BOTTOM, &range, palette.dim_text, palette);
-            }
+            ranges.push(sketch.range_text(pane));
         }
-        if has_texts(place) && !cell.note.is_empty() {
-            let corner = place.right_top() + vec2(-5.0, 3.0);
-            paint_text(&painter, corner, Align2::RIGHT_TOP, &cell.note, palette.text, palette);
+        if has_texts {
+            head_ui(ui, head.shrink2(vec2(3.0, 0.0)), &ranges.join(" · "), &cell.note, palette);
         }
     }
-    response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(name)
+    response.on_hover_cursor(CursorIcon::PointingHand)
+}
+
+/// What the heights of a cell are, for want of an axis, and its note: over its curves, not on them.
+fn head_ui(ui: &Ui, head: Rect, ranges: &str, note: &str, palette: &Palette) {
+    let note = painted_text(ui, head, -0.01, note, caption_font(), palette.text);
+    let room = note.left() - head.left() - 6.0;
+    painted_text(ui, head, 0.0, &elided(ui, ranges, room, SMALL_SIZE), caption_font(), palette.dim_text);
 }
 
 /// What was done in a cell: a click brings its response into focus, the rest is about the curve under the pointer.
-fn cell_events(response: &Response, cell: &OverviewCell<'_>, view: &mut OverviewView) -> Vec<OverviewEvent> {
+fn cell_events(
+    (response, name): (&Response, &str),
+    cell: &OverviewCell<'_>,
+    view: &mut OverviewView,
+) -> Vec<OverviewEvent> {
     let pointer = response.hover_pos().or(response.interact_pointer_pos());
-    let meant = pointer.and_then(|pointer| view.curve_at(cell, pointer)).map(|curve| curve.id.clone());
+    let curve = pointer.and_then(|pointer| view.curve_at(cell, pointer));
+    let meant = curve.map(|curve| curve.id.clone());
     let mut events: Vec<OverviewEvent> = meant.clone().map(OverviewEvent::Hovered).into_iter().collect();
+    if response.hovered() {
+        let curve = curve.map_or_else(String::new, |curve| format!(" · {}", curve.label));
+        events.push(OverviewEvent::Told(format!("{name}{curve}")));
+    }
     if response.clicked() {
         let is_alone = response.ctx.input(|input| input.modifiers.alt);
         events.push(match meant.clone().filter(|_| is_alone) {
@@ -230,10 +248,6 @@ fn cell_events(response: &Response, cell: &OverviewCell<'_>, view: &mut Overview
     events
 }
 
-fn has_texts(place: Rect) -> bool {
-    place.width() >= LEAST_WITH_TEXT.x && place.height() >= LEAST_WITH_TEXT.y
-}
-
 fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: bool, palette: &Palette) {
     let fill = match cell.constrained {
         true => palette.background.lerp_to_gamma(palette.selected, 0.55),
@@ -245,14 +259,6 @@ fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: boo
         (false, false) => Stroke::new(1.0, palette.line),
     };
     ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
-}
-
-/// A text that curves may run behind.
-fn paint_text(painter: &Painter, corner: Pos2, align: Align2, text: &str, color: Color32, palette: &Palette) {
-    let galley = painter.layout_no_wrap(text.to_owned(), CELL_FONT, color);
-    let place = align.anchor_size(corner, galley.size());
-    painter.rect_filled(place.expand2(vec2(2.0, 0.0)), 2.0, palette.background.gamma_multiply(0.6));
-    painter.galley(place.min, galley, color);
 }
 
 fn title(scene: &OverviewScene<'_>, pair: Pair) -> String {

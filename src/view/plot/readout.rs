@@ -1,12 +1,11 @@
-//! What a curve has where the pointer is: in words, and in a strip between the panes.
+//! What curves have where the pointer is: the one that it means in words, the roles in a strip between the panes.
 
-use egui::{
-    FontId, PopupAnchor, Rect, Response, RichText, Role as WidgetRole, Sense, Stroke, Tooltip, Ui, WidgetInfo, vec2,
-};
+use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 use gdcm_core::response::wrap;
 use gdcm_files::figure::decimals;
 
-use super::bode::BodeScene;
+use super::axes::FrequencyUnit;
+use super::bode_view::BodeView;
 use super::curve::{BodeCurve, Pane};
 use super::curve_style::Role;
 use super::quantity::BodeQuantity;
@@ -35,29 +34,16 @@ fn branch_text(phase_deg: f64) -> Option<String> {
     (count > 0.0).then(|| format!(" ({}° {word} {count} {noun})", decimals(principal, 0)))
 }
 
-/// Shows frequency, name and values of `curve` at `omega` \[rad/s\] beside the pointer.
-pub(super) fn curve_tooltip_ui(
-    plot: &Response,
-    scene: &BodeScene<'_>,
-    curve: &BodeCurve,
-    omega: f64,
-    palette: &Palette,
-) {
-    tooltip_ui(plot, |ui| {
-        ui.label(RichText::new(scene.unit.readout(omega)).size(SMALL_SIZE).color(palette.dim_text));
-        ui.label(value_text(scene.quantity, curve, omega));
-        if !curve.detail.is_empty() {
-            ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
-        }
-    });
-}
-
-/// Shows `content` beside the pointer, which is over `plot`.
-pub(super) fn tooltip_ui(plot: &Response, content: impl FnOnce(&mut Ui)) {
-    Tooltip::always_open(plot.ctx.clone(), plot.layer_id, plot.id, PopupAnchor::Pointer).gap(14.0).show(|ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
-        content(ui);
-    });
+/// Frequency, name and values of the curve that the pointer means, in one line.
+pub fn pointed_words(
+    view: &BodeView,
+    curves: &[BodeCurve],
+    (quantity, unit): (BodeQuantity<'_>, FrequencyUnit),
+) -> Option<String> {
+    let curve = curves.iter().find(|curve| Some(&curve.id) == view.hovered())?;
+    let omega = view.pointed_omega()?;
+    let detail = if curve.detail.is_empty() { String::new() } else { format!(" · {}", curve.detail) };
+    Some(format!("{} · {}{detail}", unit.readout(omega), value_text(quantity, curve, omega)))
 }
 
 /// The values of one role, or the difference of two.
@@ -135,7 +121,12 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
             ui.painter().extend(shapes);
             from = 20.0;
         }
-        let name = elided(ui, &cell.name, upper.width() - from, SMALL_SIZE);
+        // "nominal" where there is no room for "nominal, rejected".
+        let shown = elided(ui, &cell.name, upper.width() - from, SMALL_SIZE);
+        let name = match cell.name.split_once(", ") {
+            Some((first, _)) if shown != cell.name => elided(ui, first, upper.width() - from, SMALL_SIZE),
+            _ => shown,
+        };
         painted_text(ui, upper, from, &name, small.clone(), palette.dim_text);
         let color = |warns| if warns { palette.warning } else { palette.text };
         let font = if cell.role.is_none() { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };

@@ -97,21 +97,17 @@ pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: imp
 fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     let order = found.refined.order().unwrap_or_default();
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
-    let color = |is_good: bool| if is_good { palette.good } else { palette.warning };
+    let color = |is_good: bool| if is_good { palette.text } else { palette.warning };
     ui.horizontal_wrapped(|ui| {
         ui.label("χ²/dof");
         ui.label(RichText::new(format!("{:.2}", found.cost)).color(color(found.cost <= BAD)))
             .on_hover_text(CHI_SQUARED);
         if let Some((raw, moved)) = found.held_out_cost.zip(found.held_out_normalised) {
             ui.label("· held out");
-            let color = match moved {
-                moved if moved <= HELD_OUT[0] => palette.good,
-                moved if moved <= HELD_OUT[1] => palette.text,
-                _ => palette.warning,
-            };
-            ui.label(RichText::new(format!("{moved:.2} ({raw:.2})")).color(color)).on_hover_text(
+            let text = RichText::new(format!("{moved:.2} ({raw:.2})")).color(color(moved <= HELD_OUT[1]));
+            ui.label(text).on_hover_text(
                 "The same over the records that were held out, where the model may move within its own uncertainty, and as it is: the \
-                 sharp test. Green up to 1.3",
+                 sharp test. Up to 1.3 is good",
             );
         }
     });

@@ -14,12 +14,10 @@ use super::{ConditionRecords, Page, RecordsCommand};
 const OTHER_COLUMNS: f32 = 124.0;
 /// Least width of the names \[pt\].
 const LEAST_NAME: f32 = 60.0;
-/// Cost per degree of freedom up to which a record is fitted well, and from which it is not (M14, section 6).
-pub(super) const GOOD: f64 = 1.2;
 /// What the cost of a fit means.
 pub(super) const CHI_SQUARED: &str =
     "Cost per degree of freedom of the recommended model; 1 is what noise explains (M14, section 6)";
-/// See [`GOOD`].
+/// Cost per degree of freedom above which a record is not fitted well (M14, section 6).
 pub(super) const BAD: f64 = 1.5;
 
 /// A line a record: whether it is used and held out, and how well the model fits it.
@@ -120,10 +118,9 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
     });
 }
 
-/// A cost per degree of freedom, in the colour of what it says of the fit.
+/// A cost per degree of freedom, with a warning where the fit is bad.
 pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     let color = match cost {
-        cost if cost <= GOOD => palette.good,
         cost if cost <= BAD => palette.text,
         _ => palette.warning,
     };
@@ -175,10 +172,10 @@ pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
                 ("factor", "From the unit of the file to that of the dataset"),
                 ("time skew [ms]", "How much later the channel is logged than it happened"),
                 (
-                    "late here [ms]",
+                    "skew, this record [ms]",
                     "How much later it is logged in this record than in the others: taken out of it alone",
                 ),
-                ("times, here", "What its samples are multiplied by in this record alone: -1 turns its sign"),
+                ("factor, this record", "What its samples are multiplied by in this record alone: -1 turns its sign"),
             ] {
                 ui.label(palette.small(heading)).on_hover_text(hint);
             }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Label, Rect, RichText, Ui, vec2};
+use egui::{Color32, FontId, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
 
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
-use crate::view::{Palette, SMALL_SIZE, State};
+use crate::view::{Palette, SMALL_SIZE, State, named, painted_text};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
     CautionNote, EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
@@ -118,20 +118,53 @@ fn half_drawn(sd: &[f64; 2], part: usize) -> f64 {
 fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
     let sds = drawn.measured.iter().map(|(_, sd, _)| sd).chain(&drawn.bands);
     let is_cut = |sd: &[f64; 2]| [1, 2].iter().any(|&part| half_drawn(sd, part) < TWO_SIDED_95 * sd[part - 1]);
-    let cut = sds.into_iter().any(is_cut).then_some(("bars and bands end at ± 20 dB and ± 180°", palette.dim_text));
+    let cut = sds.into_iter().any(is_cut).then_some("bars and bands end at ± 20 dB and ± 180°");
     let legend = [
-        ("— CT-PBSID, refined, with its 95 % band", palette.identified),
-        ("- - CT-PBSID", palette.accent),
-        ("● measured (local polynomial), ± 1.96 sd", palette.text),
-        ("○ partial coherence below 0.6, or of few lines", palette.dim_text),
+        (Key::Line { dashed: false }, "CT-PBSID, refined, with its 95 % band", palette.identified),
+        (Key::Line { dashed: true }, "CT-PBSID", palette.accent),
+        (Key::Dot { filled: true }, "measured (local polynomial), ± 1.96 sd", palette.text),
+        (Key::Dot { filled: false }, "partial coherence below 0.6, or of few lines", palette.dim_text),
     ];
-    let unexcited = "▬ the reference does not excite";
-    let unexcited = (!drawn.unexcited.is_empty()).then_some((unexcited, palette.dim_text));
+    let unexcited = (Key::Bar, "the reference does not excite", palette.dim_text);
+    let unexcited = (!drawn.unexcited.is_empty()).then_some(unexcited);
     ui.horizontal_wrapped(|ui| {
-        for (text, color) in legend.into_iter().chain(unexcited).chain(cut) {
-            ui.add(Label::new(RichText::new(text).size(SMALL_SIZE).color(color)).extend());
+        ui.spacing_mut().item_spacing.x = 14.0;
+        for (key, text, color) in legend.into_iter().chain(unexcited) {
+            // One piece: no line ends between a sample and its words.
+            let small = FontId::proportional(SMALL_SIZE);
+            let words = ui.painter().layout_no_wrap(text.to_owned(), small.clone(), palette.dim_text).size().x;
+            let (rect, response) = ui.allocate_exact_size(vec2(SAMPLE + 4.0 + words, 14.0), Sense::hover());
+            key.paint(ui, rect.with_max_x(rect.left() + SAMPLE), color);
+            painted_text(ui, rect, SAMPLE + 4.0, text, small, palette.dim_text);
+            named(response, Role::Label, text);
         }
+        cut.into_iter().for_each(|words| drop(ui.label(palette.small(words))));
     });
+}
+
+/// Length of a sample in the legend \[pt\].
+const SAMPLE: f32 = 18.0;
+
+/// What stands before words of the legend.
+#[derive(Clone, Copy)]
+enum Key {
+    Line { dashed: bool },
+    Dot { filled: bool },
+    Bar,
+}
+
+impl Key {
+    fn paint(self, ui: &Ui, rect: Rect, color: Color32) {
+        let (painter, stroke) = (ui.painter(), Stroke::new(2.0, color));
+        let ends = [rect.left_center(), rect.right_center()];
+        match self {
+            Self::Line { dashed: false } => drop(painter.line_segment(ends, stroke)),
+            Self::Line { dashed: true } => painter.extend(Shape::dashed_line(&ends, Stroke::new(1.2, color), 4.0, 3.0)),
+            Self::Dot { filled: true } => drop(painter.circle_filled(rect.center(), 3.0, color)),
+            Self::Dot { filled: false } => drop(painter.circle_stroke(rect.center(), 3.0, Stroke::new(1.0, color))),
+            Self::Bar => drop(painter.rect_filled(rect.shrink2(vec2(0.0, 4.0)), 0.0, color.gamma_multiply(0.25))),
+        }
+    }
 }
 
 fn chart_of<'a>(

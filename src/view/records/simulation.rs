@@ -206,7 +206,7 @@ fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
                 let theil = model.validation().and_then(|of| of.theil.get(index).copied().flatten());
                 ui.label(model.fit_words(index).unwrap_or_else(|| "–".to_owned()));
                 let color =
-                    theil.map_or(palette.dim_text, |of| if of < GOOD_THEIL { palette.good } else { palette.warning });
+                    theil.map_or(palette.dim_text, |of| if of < GOOD_THEIL { palette.text } else { palette.warning });
                 ui.label(RichText::new(theil.map_or("–".to_owned(), |of| format!("{of:.3}"))).color(color));
             }
             ui.end_row();

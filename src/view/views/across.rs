@@ -6,7 +6,7 @@ use gdcm_files::figure::airspeed_curves;
 
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, Role, bode_ui};
+use crate::view::plot::{BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, Role, bode_ui, pointed_words};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -47,9 +47,10 @@ pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, command
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
     let rect = ui.available_rect_before_wrap();
+    let (quantity, unit) = (BodeQuantity::RESPONSE_OF_EVERY_CONDITION, state.display.unit);
     let scene = BodeScene {
-        quantity: BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
-        unit: state.display.unit,
+        quantity,
+        unit,
         stale: state.results.is_stale(ui.input(|input| input.time)),
         message: Some(state.results.absence()),
         ..BodeScene::of(&title, &curves, (band.min(), band.max()))
@@ -59,6 +60,7 @@ pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, command
             commands.push(Command::SelectCondition(id.condition));
         }
     }
+    commands.extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
     let place = pos2(rect.right() - 16.0, rect.top() + 14.0);
     ui.painter().text(place, Align2::RIGHT_TOP, title, egui::FontId::proportional(SMALL_SIZE), palette.text);
 }

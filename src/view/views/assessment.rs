@@ -69,7 +69,7 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Correction assessed", &mut chosen.correction, &corrections);
     let models = [
         (AssessedModel::Nominal, "nominal", "The physics model at the condition's own trim"),
-        (AssessedModel::Representative, "representative", "The physics model that represents its bundle"),
+        (AssessedModel::Representative, "representative", "The physics model used as representative"),
     ];
     choice_ui(ui, "Model assessed", &mut chosen.model, &models);
     let pairs = [
@@ -118,6 +118,7 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
                 commands.extend(plots.pairs.get(plot).map(|&pair| Command::FocusPair(pair)));
             }
             FigureEvent::Asked(figure) => commands.push(Command::Explain(Some(figure))),
+            FigureEvent::Told(words) => commands.push(Command::Tell(words)),
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => {}
         }
     }
@@ -215,7 +216,12 @@ impl AssessmentPlots<'_> {
         let panel = Panel::new(names, Axis::linear("").showing(Some(range))).with(ground).with_all(bars);
         let panel = panel.with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)));
         let panel = panel.with(Curve::new("ΔJ", Stroke::solid(Color::INK, 1.1), x, y));
-        panel.with_all(found.iter().map(number)).with_all(left_out.into_iter().map(words))
+        // The numbers of every bar would lie over one another: the status line has the others.
+        let most = found.iter().max_by(|a, b| a.1.total().abs().total_cmp(&b.1.total().abs())).map(|(at, _)| *at);
+        let id = self.state.condition().id();
+        let shown = self.state.dataset().conditions().iter().position(|of| of.id() == id).unwrap_or(0) as f64;
+        let is_told = |(at, _): &&(f64, CostChange)| *at == shown || (Some(*at) == most && (at - shown).abs() > 1.0);
+        panel.with_all(found.iter().filter(is_told).map(number)).with_all(left_out.into_iter().map(words))
     }
 }
 
@@ -230,18 +236,16 @@ impl FigureWords for AssessmentPlots<'_> {
         format!("Change of J, {}: {}", self.state.dataset().pair_name(pair), words.join(", "))
     }
 
-    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
-        let (MarkId::Condition(id), pair) = (id, self.pairs[plot]) else { return };
-        let dim = |ui: &mut Ui, text: String| drop(ui.weak(RichText::new(text).size(SMALL_SIZE)));
-        dim(ui, format!("{} · condition {id}", self.state.dataset().pair_name(pair)));
+    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
+        let (MarkId::Condition(id), pair) = (id, self.pairs[plot]) else { return None };
+        let of = format!("{}, condition {id}", self.state.dataset().pair_name(pair));
         let Some(change) = self.table.change(*id, pair) else {
-            ui.label(format!("left out: {}", why_not(self.table, *id, pair)));
-            return;
+            return Some(format!("{of} · left out: {}", why_not(self.table, *id, pair)));
         };
-        ui.label(format!("ΔJ {}", decimals(change.total(), 1)));
-        let [magnitude, phase] = [change.magnitude(), change.phase()].map(|part| decimals(part, 1));
-        dim(ui, format!("magnitude {magnitude} · phase {phase}"));
-        dim(ui, format!("J {:.1} → {:.1}", change.uncorrected.total(), change.corrected.total()));
+        let [total, magnitude, phase] =
+            [change.total(), change.magnitude(), change.phase()].map(|part| decimals(part, 1));
+        let [before, after] = [change.uncorrected, change.corrected].map(|cost| decimals(cost.total(), 1));
+        Some(format!("{of} · ΔJ {total}: magnitude {magnitude}, phase {phase} · J {before} → {after}"))
     }
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
@@ -251,7 +255,7 @@ impl FigureWords for AssessmentPlots<'_> {
     }
 }
 
-/// The table: green where J falls, amber where it rises. A click shows its response and its condition.
+/// The table, with a warning where J rises. A click shows its response and its condition.
 fn text_table_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -263,7 +267,6 @@ fn text_table_ui(
     let pairs: Vec<Pair> = assessed_pairs(state);
     let color = |row: usize, column: usize| match text.rows[row][column].chars().next() {
         Some('+') if column > 0 => Some(palette.warning),
-        Some('\u{2212}') => Some(palette.good),
         _ => None,
     };
     let look = TableLook { color: &color, selected: &|row| pairs.get(row) == Some(&state.display.pair) };

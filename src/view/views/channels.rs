@@ -1,7 +1,6 @@
 //! Channel gains against airspeed.
 
-use egui::{Align2, FontId, Rect, RichText, Ui, Vec2, pos2, vec2};
-use gdcm_core::dataset::ConditionId;
+use egui::{Align2, FontId, Rect, Ui, Vec2, pos2, vec2};
 use gdcm_core::study::{Edit, ExplainTarget, Uncertainty};
 use gdcm_core::uncertainty::{Bar, Scalar};
 use gdcm_core::units::s_to_ms;
@@ -148,38 +147,32 @@ impl FigureWords for GainPlots<'_> {
         Some(format!("{}, condition {id}: {value} at {airspeed_kt:.0} kt", self.figure.plots[plot].title))
     }
 
-    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, [_, value]: [f64; 2]) {
-        let MarkId::Condition(id) = id else { return };
-        let (Some(condition), Some(analysis)) = (self.state.dataset().condition(*id), self.state.analysis()) else {
-            return;
-        };
-        let (of, flight_state) = (&self.quantities[plot], condition.flight_state());
-        let choice = analysis.study.choice(*id);
-        let small = |ui: &mut Ui, text: String| drop(ui.label(RichText::new(text).size(SMALL_SIZE)));
-        let dim = |ui: &mut Ui, text: String| drop(ui.weak(RichText::new(text).size(SMALL_SIZE)));
-        dim(ui, format!("condition {id} · {:.0} kt", flight_state.airspeed_kt));
+    fn pointed(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
+        let MarkId::Condition(id) = id else { return None };
+        let (condition, analysis) = (self.state.dataset().condition(*id)?, self.state.analysis()?);
+        let (of, airspeed_kt) = (&self.quantities[plot], condition.flight_state().airspeed_kt);
+        let text = |value: f64| of.measure.text(value);
         let schedule = analysis.schedule.as_ref().ok().filter(|schedule| of.is_scheduled(schedule, self.across));
-        let scheduled = schedule.map_or_else(String::new, |schedule| {
-            let scheduled = (of.of)(&schedule.at(flight_state.airspeed_kt));
-            format!(" · scheduled {}", of.measure.text(scheduled))
-        });
-        ui.label(format!("{} {}{scheduled}", self.figure.plots[plot].title, of.measure.text(value)));
-        if let Some([lower, upper]) = analysis.condition(*id).and_then(|result| of.bounds(result)) {
-            dim(ui, format!("bounds {} to {}", of.measure.text(lower), of.measure.text(upper)));
-        }
-        if choice.held_out {
-            dim(ui, "held out of the schedule, to judge it".to_owned());
-        } else if !choice.is_in_schedule() {
-            dim(ui, "not in the schedule".to_owned());
-        }
+        let scheduled = schedule.map(|schedule| format!("scheduled {}", text((of.of)(&schedule.at(airspeed_kt)))));
+        let bounds = analysis.condition(*id).and_then(|result| of.bounds(result));
+        let choice = analysis.study.choice(*id);
+        let state = match (choice.held_out, choice.is_in_schedule()) {
+            (true, _) => Some("held out of the schedule, to judge it".to_owned()),
+            (false, false) => Some("not in the schedule".to_owned()),
+            (false, true) => None,
+        };
         let uncertainty = shown_uncertainty(self.state);
-        let sentences = uncertainty.map(|uncertainty| bar_sentences(uncertainty, of.scalar, *id));
-        sentences.into_iter().flatten().for_each(|sentence| small(ui, sentence));
-        if !flight_state.name.is_empty() {
-            dim(ui, flight_state.name.clone());
-        }
-        let keys = "click: show the condition · Ctrl+click: into the schedule, or out of it · secondary click: ask";
-        dim(ui, keys.to_owned());
+        let bar = uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar)?, of_all.level)));
+        let words = [
+            Some(format!("condition {id}, {airspeed_kt:.0} kt")),
+            Some(format!("{} {}", self.figure.plots[plot].title, text(value))),
+            bar.map(|(bar, level)| bar_words(bar, of.scalar, level)),
+            scheduled,
+            bounds.map(|[lower, upper]| format!("bounds {} to {}", text(lower), text(upper))),
+            state,
+            Some("Ctrl+click: into the schedule, or out of it; right-click: explain".to_owned()),
+        ];
+        Some(words.into_iter().flatten().collect::<Vec<_>>().join(" · "))
     }
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
@@ -214,6 +207,7 @@ pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command>
         }
         FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::SelectCondition(condition)),
         FigureEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
+        FigureEvent::Told(words) => Some(Command::Tell(words)),
         FigureEvent::Pointed(MarkId::Condition(condition)) => Some(Command::HoverCondition(condition)),
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
     }
@@ -238,18 +232,4 @@ pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
         words.push_str(&format!("; {} swaps without this figure", bar.left_out));
     }
     words
-}
-
-/// How sure a figure is in a condition, and how it differs from others at its airspeed, in sentences.
-pub(super) fn bar_sentences(uncertainty: &Uncertainty, scalar: Scalar, condition: ConditionId) -> Vec<String> {
-    let bar = uncertainty.bar(condition, scalar);
-    let mut sentences: Vec<String> = bar.iter().map(|bar| bar_words(bar, scalar, uncertainty.level)).collect();
-    if let Scalar::NetGain(pair) = scalar {
-        let left = uncertainty.conditions.get(&condition).and_then(|of| of.left_in_band[pair]);
-        sentences.extend(left.map(|left| format!("residual in the band: ± {:.1} %", 100.0 * left)));
-        let differences =
-            uncertainty.differences.iter().filter(|of| of.pair == pair && of.conditions.contains(&condition));
-        sentences.extend(differences.map(|of| of.words(uncertainty.level)));
-    }
-    sentences
 }

@@ -10,7 +10,7 @@ use gdcm_core::study::{
     RemarkKind, Table, setting,
 };
 use gdcm_core::units::telling;
-use gdcm_files::figure::{Figure, FigureRequest, MarkId};
+use gdcm_files::figure::{Figure, FigureRequest};
 
 use super::View;
 use super::frequency::condition_source;
@@ -256,6 +256,4 @@ impl FigureWords for LoopWords<'_> {
     fn plot(&self, plot: usize) -> String {
         self.0.plots[plot].title.clone()
     }
-
-    fn pointed_ui(&self, _ui: &mut Ui, _plot: usize, _id: &MarkId, _at: [f64; 2]) {}
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Align2, Color32, FontId, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
 use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
@@ -20,7 +20,7 @@ const BAR_HEIGHT: f32 = 15.0;
 /// A table is not higher; it scrolls by itself then \[pt\].
 const MOST_TABLE: f32 = 330.0;
 /// Width of what stands before the bars, and of what stands behind them \[pt\].
-const LABELS: [f32; 2] = [170.0, 230.0];
+const LABELS: [f32; 2] = [170.0, 400.0];
 
 /// The paper's question on one screen: is the scatter at one airspeed trim, identification, or real?
 pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -38,13 +38,28 @@ pub fn evidence_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     state.display.evidence_tables = sorting;
 }
 
-/// What the differences come to, in a sentence each.
+/// The significant differences in aligned columns, and a second variable that no response needs.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
-    for of in beyond {
-        let words = format!("{}: {}", state.dataset().pair_name(of.pair), of.words(uncertainty.level));
-        ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.text));
+    if let Some(of) = beyond.first() {
+        let verdict = of.verdict(uncertainty.level);
+        ui.label(palette.small(format!("{verdict}; expected: from trim and identification uncertainty")));
     }
+    Grid::new("significant differences").num_columns(4).spacing([16.0, 1.0]).min_row_height(16.0).show(ui, |ui| {
+        for of in beyond {
+            let ([first, second], difference) = (of.conditions, &of.difference);
+            let ratio = difference.ratio().map_or_else(String::new, |ratio| format!("{ratio:.1} × expected"));
+            for words in [
+                state.dataset().pair_name(of.pair),
+                format!("conditions {first} and {second} ({:.0} kt)", of.airspeed_kt),
+                format!("{:.0} %", 100.0 * difference.delta.abs()),
+                ratio,
+            ] {
+                ui.label(RichText::new(words).size(SMALL_SIZE));
+            }
+            ui.end_row();
+        }
+    });
     if let Some(variable) = state.study.settings.schedule.second {
         let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
         if !tests.clone().any(|test| test.needed) {
@@ -103,14 +118,15 @@ fn split_ui(ui: &mut Ui, name: &str, split: Option<&VarianceDecomposition>, leve
     response.on_hover_text(format!("{name}: {words}"));
 }
 
-/// "6.2 %, 2.7 times; rest 5.8 % (3.6 to 11.6)".
+/// "scatter 6.2 % (sd); 2.7 × expected; unexplained 5.8 % (90 %: 3.6 to 11.6)".
 fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     let percent = |variance: f64| 100.0 * variance.sqrt();
-    let times = split.ratio().map_or_else(String::new, |ratio| format!(", {ratio:.1} times"));
-    let interval =
-        split.unexplained_interval(level).map(|[low, high]| format!(" ({:.1} to {:.1})", 100.0 * low, 100.0 * high));
+    let times = split.ratio().map_or_else(String::new, |ratio| format!("; {ratio:.1} × expected"));
+    let interval = split
+        .unexplained_interval(level)
+        .map(|[low, high]| format!(" ({:.0} %: {:.1} to {:.1})", 100.0 * level, 100.0 * low, 100.0 * high));
     format!(
-        "{:.1} %{times}; rest {:.1} %{}",
+        "scatter {:.1} % (sd){times}; unexplained {:.1} %{}",
         percent(split.scatter),
         percent(split.unexplained()),
         interval.unwrap_or_default()

@@ -8,6 +8,7 @@ use gdcm_core::dataset::{Band, ModelId, Pair};
 use gdcm_core::fidelity::{MAGNITUDE_WEIGHT, PHASE_WEIGHT};
 use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
+use gdcm_core::units::telling;
 use gdcm_files::figure::{BodeOptions, ConditionSource};
 
 use super::compare::overlaid_analysis;
@@ -16,7 +17,7 @@ use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
 use crate::view::plot::{
     BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout,
-    ReadoutCell, Role, ValueUnit, bode_ui,
+    ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
 };
 use crate::view::state::State;
 
@@ -59,6 +60,7 @@ pub(super) fn frequency_plot_ui(
     if let Some(CurveId::Model(id)) = view.hovered() {
         commands.push(Command::Hover(id.clone()));
     }
+    commands.extend(pointed_words(view, curves, (quantity, unit)).map(Command::Tell));
     commands.extend(view.pointed_omega().map(|omega| CurveCommand::PointAt(omega).into()));
 }
 
@@ -167,6 +169,14 @@ fn chips(state: &State) -> Vec<(Chip, Command)> {
     if any_selected {
         let hint = "Leave them as they are (Escape)";
         chips.push(chip("Select none ×".to_owned(), hint, CurveCommand::Select(BTreeSet::new()).into()));
+    }
+    if !curves.crossings.is_empty() {
+        let unit = state.display.unit;
+        let names =
+            curves.crossings.iter().map(|(name, omega)| format!("{name} {}", telling(unit.of_omega(*omega), 2)));
+        let text = format!("{} {} ×", names.collect::<Vec<_>>().join(" · "), unit.symbol());
+        let hint = "The frequencies marked. Click: take the marks away";
+        chips.push(chip(text, hint, CurveCommand::UnpinCursors.into()));
     }
     let hidden = curves.hidden_models.iter().filter(of_condition).count();
     if hidden > 0 {

@@ -7,7 +7,7 @@ use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 use gdcm_core::requirements::{TestInput, TestInputShape};
 use gdcm_core::study::{Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend};
 use gdcm_core::units::number;
-use gdcm_files::figure::{Figure, FigureKind, MarkId, OverTime};
+use gdcm_files::figure::{Figure, FigureKind, OverTime};
 
 use super::{Need, RequirementsPage, View, decided, tolerances_ui};
 use crate::view::command::Command;
@@ -197,6 +197,4 @@ impl FigureWords for HistoryWords<'_> {
     fn plot(&self, plot: usize) -> String {
         self.figure.plots.get(plot).map_or_else(String::new, |plot| format!("{} over time", plot.title))
     }
-
-    fn pointed_ui(&self, _: &mut Ui, _: usize, _: &MarkId, _: [f64; 2]) {}
 }

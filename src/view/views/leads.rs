@@ -4,7 +4,7 @@ use egui::{Panel, RichText, Ui, vec2};
 use gdcm_core::correction::{Channel, LeadPrice};
 use gdcm_core::study::{PhaseCorrection, Table};
 use gdcm_core::units::{number, s_to_ms, signed, telling};
-use gdcm_files::figure::{Figure, FigureKind, FigureRequest, MarkId, all_channels};
+use gdcm_files::figure::{Figure, FigureKind, FigureRequest, all_channels};
 
 use super::View;
 use super::frequency::condition_source;
@@ -109,6 +109,4 @@ impl FigureWords for LeadsWords<'_> {
     fn plot(&self, plot: usize) -> String {
         self.0.plots[plot].title.clone()
     }
-
-    fn pointed_ui(&self, _ui: &mut Ui, _plot: usize, _id: &MarkId, _at: [f64; 2]) {}
 }

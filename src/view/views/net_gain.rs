@@ -38,6 +38,14 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
         commands.push(Command::ShowEvidence(!shown));
     }
     bars_switch_ui(ui, state, ("bars", "error bars"), commands);
+    if let Some((variant, _)) = overlaid_analysis(state) {
+        let button = ui.small_button(RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)));
+        let name = format!("Variant {variant} laid over");
+        let hint = "Hollow squares: the net gains of this variant. Click: take them away";
+        if named(button, Role::Button, &name).on_hover_text(hint).clicked() {
+            commands.push(Command::Overlay(None));
+        }
+    }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let form = schedule_words(&state.study.settings.schedule);
     let text = format!("{} \u{25be}", form.strip_prefix("polynomial of ").unwrap_or(&form));

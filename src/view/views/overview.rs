@@ -41,6 +41,7 @@ pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
                 commands.push(Command::ShowView(View::Bode));
             }
             OverviewEvent::Hovered(CurveId::Model(id)) => commands.push(Command::Hover(id)),
+            OverviewEvent::Told(words) => commands.push(Command::Tell(words)),
             OverviewEvent::Isolated(CurveId::Model(id)) => commands.push(Command::Isolate(id)),
             OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
             OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}

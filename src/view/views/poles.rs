@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{Panel, RichText, Ui, Vec2, vec2};
+use egui::{Panel, Ui, Vec2, vec2};
 use gdcm_core::couplings::PoleShift;
 use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
 use gdcm_core::requirements::{ModeName, NamedBy};
@@ -16,7 +16,7 @@ use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
-use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::state::State;
 use crate::view::table_view::{TableLook, table_ui};
@@ -73,6 +73,7 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.push(match event {
             FigureEvent::Pointed(MarkId::Model(id)) => Command::Hover(id),
+            FigureEvent::Told(words) => Command::Tell(words),
             FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => Command::Isolate(id),
             FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => Edit::Restore(id).into(),
             FigureEvent::Clicked(_, MarkId::Model(id), _) => Edit::Reject(id).into(),
@@ -128,26 +129,21 @@ impl FigureWords for PoleWords<'_> {
         format!("{name}: {} poles and zeros", self.dots)
     }
 
-    fn pointed_ui(&self, ui: &mut Ui, _: usize, id: &MarkId, [re, im]: [f64; 2]) {
-        let (MarkId::Model(id), Some(modes)) = (id, self.state.modes()) else { return };
-        let models = modes.condition.bundle(id.bundle);
-        let Some(index) = modes.condition.position(id.bundle, &id.name) else { return };
+    fn pointed(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
+        let (MarkId::Model(id), modes) = (id, self.state.modes()?) else { return None };
+        let index = modes.condition.position(id.bundle, &id.name)?;
+        let model = &modes.condition.bundle(id.bundle)[index];
         let found = modes.bundle(id.bundle)[index].as_deref().unwrap_or_default();
-        ui.label(&id.name);
-        let lines = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
-            Some(mode) => std::iter::once(mode_words(mode))
-                .chain(name_words(mode, &models[index]))
-                .chain(participation_words(mode, &models[index]))
-                .chain(sampled_words(&models[index]))
+        let words: Vec<String> = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
+            Some(mode) => [Some(mode_words(mode)), name_words(mode, model), participation_words(mode, model, 3)]
+                .into_iter()
+                .flatten()
+                .chain(sampled_words(model))
                 .collect(),
-            None => {
-                vec![format!("transmission zero of {}", self.state.dataset().pair_name(self.state.display.pair))]
-            }
+            None => vec![format!("transmission zero of {}", self.state.dataset().pair_name(self.state.display.pair))],
         };
         let click = if self.state.study.is_rejected(id) { "click to restore" } else { "click to reject" };
-        for line in lines.into_iter().chain([click.to_owned()]) {
-            ui.weak(RichText::new(line).size(SMALL_SIZE));
-        }
+        Some(format!("{} · {} · {click}", id.name, words.join(" · ")))
     }
 }
 
@@ -272,10 +268,8 @@ fn sampled_words(model: &Model) -> Option<String> {
     Some(format!("s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn", number(sample_time_s)))
 }
 
-/// The states that take part most: "w 62 %, q 21 %".
-fn participation_words(mode: &Mode, model: &Model) -> Option<String> {
-    /// States named.
-    const MOST: usize = 3;
+/// The states that take part most, so many at most: "w 62 %, q 21 %".
+fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String> {
     let shares = match &mode.participation {
         Ok(shares) => shares,
         Err(why) => return Some(why.to_string()),
@@ -284,7 +278,7 @@ fn participation_words(mode: &Mode, model: &Model) -> Option<String> {
         Some(name) => name.clone(),
         None => format!("state {}", state + 1),
     };
-    let words = shares.iter().take(MOST).map(|(state, share)| format!("{} {:.0} %", name(*state), 100.0 * share));
+    let words = shares.iter().take(most).map(|(state, share)| format!("{} {:.0} %", name(*state), 100.0 * share));
     Some(words.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
 }
 
@@ -293,7 +287,7 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
     let kind = BundleKind::Physics;
     let models = modes.condition.bundle(kind);
     let title = format!("Modes of condition {}", modes.condition.id());
-    let columns = ["mode", "|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "outlying at", "states"];
+    let columns = ["mode", "|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "states", "outlying at"];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();
     let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
@@ -309,8 +303,8 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
             figure(mode.pole.re),
             figure(mode.pole.im),
             figure(track.spread_rad_s),
+            participation_words(mode, &models[reference], 2).unwrap_or_default(),
             jumps.join(", "),
-            participation_words(mode, &models[reference]).unwrap_or_default(),
         ]);
         jumping.push(track.jumps.first().map(|&model| state.model_id(kind, &models[model].name)));
     }

@@ -420,17 +420,15 @@ impl FigureWords for BandwidthWords<'_> {
         format!("Phase delay over bandwidth of {name}")
     }
 
-    fn pointed_ui(&self, ui: &mut Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
-        let (MarkId::Condition(id), Some(pair)) = (id, self.pairs.get(plot)) else { return };
-        ui.label(format!("condition {id}"));
-        for role in RequirementRole::ALL {
-            let Some(of) = self.requirements.bandwidth_of(*id, *pair, role) else { continue };
-            let (Some(bandwidth), Some(delay_s)) = (of.omega_bw_rad_s, of.phase_delay_s) else { continue };
-            let words =
-                format!("{}: {} rad/s, {} ms", role.name(), telling(bandwidth, 2), telling(s_to_ms(delay_s), 0));
-            ui.weak(words);
-        }
-        ui.weak("click: marked in Bode");
+    fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
+        let (MarkId::Condition(id), pair) = (id, self.pairs.get(plot)?) else { return None };
+        let of_role = |role: RequirementRole| {
+            let of = self.requirements.bandwidth_of(*id, *pair, role)?;
+            let (bandwidth, delay_s) = of.omega_bw_rad_s.zip(of.phase_delay_s)?;
+            Some(format!("{} {} rad/s, {} ms", role.name(), telling(bandwidth, 2), telling(s_to_ms(delay_s), 0)))
+        };
+        let roles: Vec<String> = RequirementRole::ALL.into_iter().filter_map(of_role).collect();
+        Some(format!("condition {id} · {} · click: marked in Bode", roles.join(" · ")))
     }
 }
 

@@ -113,7 +113,7 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
     choose_from_menu_of_nominal(&mut window, "Phase +360°");
     let moved = drawn(&window, CurveRole::Nominal);
     assert_eq!(moved.phase_deg[200], before.phase_deg[200] + 360.0);
-    assert!(moved.detail.contains("moved up by 1 turn"), "{}", moved.detail);
+    assert!(moved.detail.contains("phase +360°"), "{}", moved.detail);
     assert_eq!(state(&window).history.undo_label(), None, "it changes no decision");
     choose_of_curves(&mut window, "Phases wrapped");
     for curve in &state(&window).display.drawn {

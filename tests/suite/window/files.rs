@@ -24,6 +24,17 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
 }
 
 #[test]
+fn models_of_another_program_that_are_opened_by_path_are_sent_to_their_import() {
+    let folder = tempfile::tempdir().unwrap();
+    crate::assembling::small_folder(folder.path());
+    let mut window = window();
+    open_by_path(&mut window, &folder.path().join("c1_60kt/V+5kt.mat"));
+    let notice = state(&window).notice.clone().expect("the trouble is shown");
+    assert_eq!(notice.kind, NoticeKind::Trouble);
+    assert!(notice.text.contains("V+5kt.mat") && notice.text.contains("Import models"), "{}", notice.text);
+}
+
+#[test]
 fn whether_to_lose_decisions_is_asked_once_the_file_is_found_good() {
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");

@@ -13,14 +13,17 @@ mod files;
 mod forms;
 mod hands;
 mod keyboard;
+mod layout;
 mod lead;
 mod lists;
 mod pictures;
 mod plots;
+mod pointing;
 pub(crate) mod records;
 mod recovery;
 mod reload;
 mod requirements;
+mod start;
 mod views;
 mod walk;
 

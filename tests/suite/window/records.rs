@@ -87,6 +87,54 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
 }
 
 #[test]
+fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
+    let mut window = records_window();
+    let ids = [ConditionId(3), CONDITION_10_ID];
+    for id in ids {
+        give(&mut window, gdcm::view::command::Command::SelectCondition(id));
+        wait_until(&mut window, "the records", |window| {
+            state(window).records.conditions.get(&id).is_some_and(|of| !of.rows.is_empty())
+        });
+        // A search of little: what is looked at is that it comes to its end.
+        if window.query_by_label("Identification: orders").is_none() {
+            click(&mut window, "Advanced");
+        }
+        type_into(&mut window, "Identification: orders", "8");
+        type_into(&mut window, "Identification: past windows", "10");
+        type_into(&mut window, "Identification: Laguerre poles", "6");
+    }
+    window.get_by_label("Identify all 2 conditions").click();
+    wait_until(&mut window, "the first of them", |window| !state(window).records.running.is_empty());
+    wait_until(&mut window, "the end", |window| state(window).records.running.is_empty());
+    for id in ids {
+        assert!(state(&window).records.conditions[&id].found.is_some(), "{id}");
+    }
+    window.run_steps(2);
+    window.get_by_label("finished: models of 2 conditions identified");
+    assert_eq!(state(&window).records.page, RecordsPage::Conditions);
+
+    let heading = "Sort Identified conditions by airspeed [kt]";
+    let row_of = |window: &Window, airspeed: &str| {
+        let heading = window.get_by_label(heading).rect();
+        let is_below =
+            |place: &egui::Rect| place.top() > heading.bottom() && heading.x_range().contains(place.center().x);
+        window.query_all_by_label(airspeed).map(|node| node.rect()).find(is_below).expect("a row of the table")
+    };
+    window.get_by_label(heading).click();
+    window.run_steps(3);
+    assert!(row_of(&window, "45").top() < row_of(&window, "60").top(), "rising");
+    window.get_by_label(heading).click();
+    window.run_steps(3);
+    assert!(row_of(&window, "60").top() < row_of(&window, "45").top(), "falling");
+    let at = row_of(&window, "45").center();
+    window.drag_at(at);
+    window.run_steps(1);
+    window.drop_at(at);
+    settle(&mut window);
+    assert_eq!(state(&window).condition().id(), ConditionId(3), "a click goes there");
+}
+
+#[test]
 fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_place() {
     let mut window = records_window();
     let part = |window: &Window, index: usize| {

@@ -187,8 +187,14 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
     show(&mut window, View::Evidence);
     wait_for_bars(&mut window);
     // The independent numpy code finds the ratio 5.39 with the three suggested models of condition 10 rejected, which 3 and 5 lack.
-    let sentence = "COL → NZ: conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from trim and identification uncertainty; significant: a physical effect, or a model-form error";
-    window.get_by_label(sentence);
+    window.get_by_label(
+        "significant: a physical effect, or a model-form error; expected: from trim and identification uncertainty",
+    );
+    let line = window.get_by_label("5.4 × expected").rect();
+    for words in ["COL → NZ", "conditions 3 and 5 (45 kt)", "13 %"] {
+        let is_beside = |place: egui::Rect| (place.center().y - line.center().y).abs() < 2.0;
+        assert!(window.query_all_by_label(words).any(|node| is_beside(node.rect())), "{words} at {line}");
+    }
     let split = window.query_by_label_contains("LON → Q at equal airspeed: ").is_some();
     assert!(split, "what the scatter is made of has a line for each response");
     let uncertainty = state(&window).uncertainty().unwrap();

@@ -30,7 +30,7 @@ impl CautionNote {
             "held" => "steps",
             "copy" => "a copy",
             "sign" => "other sign",
-            "time-skew" => "logged late",
+            "time-skew" => "time skew",
             "vibration" => "vibrates",
             "unit" => "unit in doubt",
             "inadequate" => "poorly fitted",

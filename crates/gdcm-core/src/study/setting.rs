@@ -133,7 +133,7 @@ pub static LEAD_ORDER: Setting = row(
         |of, index| of.lead.order = LeadOrder::ALL[index],
     ),
 )
-.at(Place::Top, "Lead: order", "Order of the lead filters")
+.at(Place::Line, "Lead: order", "Order of the lead filters")
 .where_it(has_leads);
 
 fn has_leads(study: &Study) -> bool {

@@ -6,6 +6,7 @@ use gdcm_core::dataset::{Band as BandOfComparison, BundleKind, Dataset, ModelBan
 use gdcm_core::identification::TWO_SIDED_95;
 use gdcm_core::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
 use gdcm_core::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves, display_band};
+use gdcm_core::units::signed;
 
 use super::axis::Range;
 use super::bode::BodeOptions;
@@ -50,9 +51,7 @@ impl ConditionSource<'_> {
 /// A curve that says that its phase was moved up by so many turns.
 fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
-        let (way, count) = (if turns > 0 { "up" } else { "down" }, turns.unsigned_abs());
-        let noun = if count == 1 { "turn" } else { "turns" };
-        let moved = format!("phase moved {way} by {count} {noun}");
+        let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
         curve.detail = if curve.detail.is_empty() { moved } else { format!("{moved} · {}", curve.detail) };
     }
     curve

@@ -70,6 +70,21 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
 }
 
 #[test]
+fn zooming_out_of_a_chart_over_time_ends_at_its_data() {
+    let mut harness = harness();
+    let whole = harness.state().clone();
+    harness.hover_at(Pos2::new(400.0, 100.0));
+    harness.step();
+    harness.event(wheel(vec2(0.0, 400.0)));
+    harness.run_steps(40);
+    assert!(harness.state()[0].width() < 0.5 * whole[0].width(), "{:?}", harness.state());
+    harness.event(wheel(vec2(0.0, -4000.0)));
+    harness.run_steps(80);
+    // The ends of the axis are those of the data, as before the first turn.
+    assert!((harness.state()[0].width() / whole[0].width() - 1.0).abs() < 1e-6, "{:?}", harness.state());
+}
+
+#[test]
 fn dragging_moves_the_time_of_every_chart_and_the_values_follow() {
     let mut harness = harness();
     let whole = harness.state().clone();

@@ -23,10 +23,6 @@ impl FigureWords for Numbers {
     fn plot(&self, plot: usize) -> String {
         format!("plot {plot}")
     }
-
-    fn pointed_ui(&self, ui: &mut egui::Ui, plot: usize, id: &MarkId, _: [f64; 2]) {
-        ui.label(format!("{id:?} in plot {plot}"));
-    }
 }
 
 fn id(number: usize) -> MarkId {

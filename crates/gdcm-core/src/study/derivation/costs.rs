@@ -1,7 +1,7 @@
 //! How scores and discontinuity ratios were computed (M5).
 
 use crate::correction::{Channel, ChannelCorrection};
-use crate::dataset::{BundleKind, ModelId, Pair};
+use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Origin, Pair};
 use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT, SUGGESTION_RATIO};
 use crate::study::{AssessedModel, AssessmentChoice, assessed};
 use crate::units::{s_to_ms, signed};
@@ -22,6 +22,21 @@ fn distance_rests_on(context: &Context<'_>, models: String) -> Vec<String> {
     vec![models, context.band(), context.measuring()]
 }
 
+/// How a model came about, of how many states it is, how it is sampled, and where it is from.
+fn model_words(model: &Model) -> impl Iterator<Item = String> {
+    let method = match &model.origin {
+        Origin::Identified { method, .. } => method.as_ref().map(|method| format!("identified by {method}")),
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
+    };
+    let timing = match &model.dynamics {
+        Dynamics::StateSpace(matrices) => Some(matrices.timing()).filter(|timing| !timing.is_plain()),
+        _ => None,
+    };
+    let order = model.order().map(|order| format!("{order} states"));
+    let source = model.source.as_ref().map(|source| format!("from {}", source.words()));
+    [method, order, timing.map(|timing| timing.words()), source].into_iter().flatten()
+}
+
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
     let (result, kind) = (context.result, model.bundle);
     let value = result.score(kind, &model.name)?;
@@ -37,11 +52,13 @@ pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation
     };
     let representative = result.representative_name(kind);
     let models = format!("{} {kind} models kept; {representative} is used as representative", distances.len() + 1);
+    let mut rests_on = distance_rests_on(context, models);
+    rests_on.extend(result.condition.bundle(kind).get(place).into_iter().flat_map(model_words));
     Some(Derivation {
         title: context.title(&format!("score of {}", model.name)),
         equation: "s_a = mean over b ≠ a of d(a, b), d(a, b)² = mean over the responses of J(a against b)".to_owned(),
         with_numbers,
-        rests_on: distance_rests_on(context, models),
+        rests_on,
         section: "M5",
         value,
     })
@@ -66,8 +83,9 @@ pub(super) fn ratio(context: &Context<'_>, model: &ModelId) -> Option<Derivation
         fit.weights.iter().map(|of| format!("w_{} = {} over ±{}", of.name, digits(of.weight), digits(of.largest)));
     let mut with_numbers: Vec<String> = weights.collect();
     with_numbers.push(format!("r = {} = {}", median_words(&ratios), digits(value)));
-    let models = format!("all {} physics models, whatever is rejected", models.len());
-    let mut rests_on = distance_rests_on(context, models);
+    let bundle = format!("all {} physics models, whatever is rejected", models.len());
+    let mut rests_on = distance_rests_on(context, bundle);
+    rests_on.extend(model_words(&models[place]));
     rests_on.push(format!("above {SUGGESTION_RATIO} a model is suggested as an outlier"));
     Some(Derivation {
         title: context.title(&format!("discontinuity ratio of {}", model.name)),

@@ -1,0 +1,158 @@
+//! What pointing says: in the status line over plots, in small tooltips over lists.
+
+use std::collections::BTreeSet;
+
+use egui::Order;
+use gdcm::view::plot::OverviewView;
+
+use super::views::{give, show};
+use super::*;
+
+/// Rests the pointer at a place for longer than any tooltip waits.
+fn rest_at(window: &mut Window, at: Pos2) {
+    // From elsewhere: no tooltip of what was there before is in the way.
+    window.hover_at(pos2(3.0, 3.0));
+    window.run_steps(3);
+    window.hover_at(at);
+    window.run_steps(10);
+}
+
+/// The part of the screen that the tooltips take.
+fn tooltips(window: &Window) -> Vec<egui::Rect> {
+    let layers = window.ctx.memory(|memory| memory.areas().visible_layer_ids());
+    let open = layers.into_iter().filter(|layer| layer.order == Order::Tooltip);
+    open.filter_map(|layer| window.ctx.memory(|memory| memory.area_rect(layer.id))).collect()
+}
+
+/// Asserts that nothing opens where something of a plot is pointed at, and that the status line says what it is.
+fn assert_told(window: &mut Window, what: &str, at: Pos2) {
+    rest_at(window, at);
+    let told = state(window).display.told.clone();
+    let told = told.unwrap_or_else(|| panic!("{what}: nothing is said at {at}"));
+    assert_eq!(tooltips(window), [], "{what}: {told}");
+    let line = window.get_by_label(&told).rect();
+    assert!(line.top() > 970.0, "{what}: in the status line, not at {line}");
+}
+
+#[test]
+fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let nominal = super::plots::place_on_nominal(&window);
+    assert_told(&mut window, "Bode", nominal);
+    let told = state(&window).display.told.clone().unwrap();
+    assert!(told.contains("nominal · ") && told.ends_with("click to reject"), "{told}");
+
+    let dot = |window: &Window, view: View| {
+        let id = MarkId::Condition(ConditionId(3));
+        state(window).display.figures[&view].screen_position(0, &id).expect("its dot is drawn")
+    };
+    let net_gain = dot(&window, View::NetGain);
+    assert_told(&mut window, "Net gain", net_gain);
+    assert!(state(&window).display.told.as_ref().unwrap().starts_with("condition 3, 45 kt · "));
+
+    show(&mut window, View::Overview);
+    let pair = pair(&window, "Q", "LON");
+    let cell = OverviewView::screen_position(&state(&window).display.overview, pair).unwrap();
+    assert_told(&mut window, "Overview", cell);
+
+    show(&mut window, View::Poles);
+    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    window.run_steps(2);
+    let figure = gdcm::view::views::poles(state(&window)).expect("the modes are known");
+    let fastest = figure.plots[0].panels[0].dots().map(|dot| [dot.x, dot.y]).min_by(|a, b| a[0].total_cmp(&b[0]));
+    let pole = state(&window).display.figures[&View::Poles].position(0, fastest.unwrap()).unwrap();
+    assert_told(&mut window, "Poles", pole);
+}
+
+#[test]
+fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    let marks = vec![("ω180", 4.0)];
+    give(&mut window, gdcm::view::CurveCommand::MarkCrossings(marks));
+    let chip = window.get_by_label_contains("ω180 4.0").rect();
+    let frame = *state(&window).display.bode.transform(Pane::Magnitude).unwrap().frame();
+    assert!(chip.bottom() < frame.top(), "{chip} over {frame}");
+    window.get_by_label_contains("ω180 4.0").click();
+    settle(&mut window);
+    assert!(state(&window).display.curves.crossings.is_empty(), "a click takes the marks away");
+}
+
+/// In how many lines the texts of the tooltip stand that opens at a place.
+fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
+    let labels = |window: &Window| -> BTreeSet<String> {
+        let nodes = window.query_all_by_role(Role::Label);
+        nodes.map(|node| format!("{:?} {}", node.accesskit_node().label(), node.rect())).collect()
+    };
+    window.hover_at(pos2(3.0, 3.0));
+    window.run_steps(3);
+    let before = labels(window);
+    rest_at(window, at);
+    let open = tooltips(window);
+    let [place] = open[..] else { panic!("one tooltip: {open:?}") };
+    // What lies under it was there before.
+    let is_new = |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
+    let nodes = window.query_all_by_role(Role::Label);
+    let texts = nodes.map(|node| (node.accesskit_node().label(), node.rect()));
+    let inside = texts.filter(|(label, rect)| place.expand(1.0).contains_rect(*rect) && is_new(label, *rect));
+    let lines: BTreeSet<i64> = inside.map(|(_, rect)| rect.center().y.round() as i64).collect();
+    lines.len()
+}
+
+#[test]
+fn a_tooltip_has_a_name_and_four_rows_at_most() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    // A model that has everything that can be said of one: trim, ratio, distance, and why it is rejected.
+    let reject = gdcm_core::study::Edit::RejectBecause {
+        model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
+        reason: "a step near this trim".to_owned(),
+    };
+    give(&mut window, reject);
+    let place = |window: &Window, label: &str| window.get_by_label(label).rect();
+    let model = place(&window, "physics model V+10kt");
+    let lines = lines_of_tooltip(&mut window, pos2(model.left() + 60.0, model.center().y));
+    assert!((3..=5).contains(&lines), "{lines} lines about a model");
+    let cell = place(&window, "Response LON → Q");
+    let lines = lines_of_tooltip(&mut window, cell.left_bottom() + vec2(8.0, -6.0));
+    // The heads of the columns are a line too.
+    assert!((5..=6).contains(&lines), "{lines} lines about a response");
+    let condition = place(&window, CONDITION_10);
+    let lines = lines_of_tooltip(&mut window, condition.left_center() + vec2(6.0, 0.0));
+    assert!((2..=5).contains(&lines), "{lines} lines about a condition");
+}
+
+#[test]
+fn what_a_tooltip_does_not_say_is_behind_the_question() {
+    use gdcm_core::study::{ExplainTarget, derivation};
+    let window = window();
+    let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
+    let found = derivation(state(&window).analysis().unwrap(), &ExplainTarget::Score(id)).unwrap();
+    assert!(found.rests_on.iter().any(|words| words.ends_with(" states")), "{:?}", found.rests_on);
+    let text = gdcm::view::explanation::text_of(&found);
+    for (symbol, meaning) in found.terms() {
+        assert!(text.contains(&format!("{symbol}\t{meaning}")), "{symbol} in {text}");
+    }
+}
+
+#[test]
+fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
+    let mut window = window();
+    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    let bars = |window: &Window| {
+        let cell = window.get_by_label("Response LON → Q").rect();
+        let texts = window.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) if cell.contains(text.pos) => Some(text.galley.text().to_owned()),
+            _ => None,
+        });
+        texts.filter(|text| text.starts_with('±')).count()
+    };
+    window.run_steps(3);
+    let before = bars(&window);
+    assert_eq!(before, 2, "of the gain and of the delay");
+    let cell = window.get_by_label("Response LON → Q").rect();
+    window.hover_at(cell.left_bottom() + vec2(8.0, -6.0));
+    window.run_steps(2);
+    assert_eq!(bars(&window), before);
+}

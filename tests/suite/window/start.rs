@@ -1,0 +1,90 @@
+//! Ways in: the line over the example, the start page, and what opens first.
+
+use gdcm::view::command::Command as Action;
+use gdcm::view::display::Preferences;
+use gdcm::view::start_page::OpensWith;
+
+use super::*;
+
+const WAYS: [&str; 3] = ["Open dataset…", "Import models…", "Import records…"];
+
+/// The window on the example, with nothing waited for: on the start page no curves are drawn.
+fn begun_with(setup: Setup) -> Window {
+    let build = |creation: &mut eframe::CreationContext<'static>| {
+        GdcmApp::with(&creation.egui_ctx, example(), setup).expect("a thread can be started")
+    };
+    let mut window = Harness::builder().with_size(vec2(1280.0, 720.0)).build_eframe(build);
+    window.run_steps(3);
+    window
+}
+
+fn preferring(opens_with: OpensWith) -> Setup {
+    Setup { preferences: Preferences { opens_with, ..Preferences::default() }, ..warm() }
+}
+
+fn press(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    window.run_steps(4);
+}
+
+#[test]
+fn a_line_over_the_plots_of_the_example_offers_three_ways_in() {
+    let mut window = window();
+    let places = WAYS.map(|way| window.get_by_label(way).rect());
+    assert!(places.windows(2).all(|pair| pair[0].right() < pair[1].left()), "beside one another: {places:?}");
+    assert!(places.iter().all(|place| place.height() <= 18.0), "slim: {places:?}");
+    click(&mut window, "Import models…");
+    assert!(state(&window).assembling.is_some());
+    let mut window = super::window();
+    open_by_path(&mut window, &files::small_dataset());
+    assert!(WAYS.iter().all(|way| window.query_by_label(way).is_none()), "one's own data need no such line");
+}
+
+#[test]
+fn the_start_page_comes_with_close_and_from_the_menu_and_leads_back() {
+    let mut window = window();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    window.run_steps(4);
+    assert!(state(&window).on_start_page && state(&window).is_example);
+    for way in WAYS {
+        window.get_by_label(way);
+    }
+    assert!(window.query_by_label("Export corrections…").is_none(), "no panels");
+    press(&mut window, "Explore the example");
+    assert!(!state(&window).on_start_page);
+    settle(&mut window);
+    click(&mut window, "File");
+    press(&mut window, "Start page");
+    assert!(state(&window).on_start_page);
+    press(&mut window, "Import models…");
+    assert!(state(&window).assembling.is_some());
+}
+
+#[test]
+fn closing_asks_before_decisions_are_lost() {
+    let mut window = window();
+    click(&mut window, "Keep physics model V+10kt");
+    window.key_press_modifiers(Modifiers::COMMAND, Key::W);
+    window.run_steps(4);
+    assert!(!state(&window).on_start_page && state(&window).unsaved);
+    press(&mut window, "Don't save");
+    assert!(state(&window).on_start_page && !state(&window).unsaved);
+}
+
+#[test]
+fn what_opens_first_is_a_preference() {
+    assert!(!state(&begun_with(preferring(OpensWith::Example))).on_start_page);
+    let mut window = begun_with(preferring(OpensWith::StartPage));
+    assert!(state(&window).on_start_page);
+    window.get_by_label("Explore the example");
+    window.state_mut().dispatch(Action::BeginWith(OpensWith::LastStudy));
+    assert_eq!(Preferences::of(&state(&window).display).opens_with, OpensWith::LastStudy, "and is kept");
+}
+
+#[test]
+fn what_went_wrong_before_the_window_opened_is_told_in_it() {
+    let trouble = "broken.json: line 1, column 12: expected a value, found the end of the file";
+    let window = begun_with(Setup { trouble: Some(trouble.to_owned()), ..preferring(OpensWith::StartPage) });
+    window.get_by_label(trouble);
+    assert!(!state(&window).on_start_page, "the example is open");
+}

@@ -3,11 +3,13 @@
 use gdcm_core::couplings::{LoopMargin, PoleShift};
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::CouplingsAssessment;
+use nalgebra::Complex;
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{Figure, Panel, Plot};
 use super::mark::{Along, Band, Curve, Dot, DotShape, Dots, Mark, Rule};
+use super::requirements::{arrow, spanned};
 use super::role::Role;
 use super::units::FrequencyUnit;
 
@@ -60,11 +62,15 @@ fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     Plot::new(format!("Poles of condition {shown}")).panel(panel)
 }
 
-/// Poles without couplings, those with them, and a line from each to where it goes.
+/// Poles without couplings, those with them, and an arrow from each to where it goes.
 pub fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
-    let ways = shifts.iter().filter_map(|shift| {
-        let (from, to) = (shift.before?, shift.after);
-        Some(Mark::from(Curve::new("moved", WAY, [from.re, to.re], [from.im, to.im])))
+    let place = |pole: Complex<f64>| [pole.re, pole.im];
+    let moved: Vec<[[f64; 2]; 2]> =
+        shifts.iter().filter_map(|shift| Some([place(shift.before?), place(shift.after)])).collect();
+    let spanned = spanned(moved.iter().flatten().copied());
+    let ways = moved.into_iter().map(|[from, to]| {
+        let (x, y): (Vec<f64>, Vec<f64>) = arrow(from, to, spanned).into_iter().map(|[x, y]| (x, y)).unzip();
+        Mark::from(Curve::new("moved", WAY, x, y))
     });
     let dots = |name: &str, shape: DotShape, role: Role, places: Vec<[f64; 2]>| {
         let dots = places.into_iter().map(|[x, y]| Dot { x, y, label: String::new(), id: None }).collect();

@@ -90,7 +90,7 @@ fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<I
 }
 
 /// What these places span along both axes; nothing is no more than a thousandth.
-fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
+pub(super) fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
     [0, 1].map(|axis| {
         let values = places.clone().map(|place| place[axis]);
         let (low, high) =
@@ -100,7 +100,7 @@ fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
 }
 
 /// A line from one place to another with a head in the middle, where no marker hides it; drawn to the scale of what is `spanned`.
-fn arrow(from: [f64; 2], to: [f64; 2], spanned: [f64; 2]) -> Vec<[f64; 2]> {
+pub(super) fn arrow(from: [f64; 2], to: [f64; 2], spanned: [f64; 2]) -> Vec<[f64; 2]> {
     let along = [0, 1].map(|axis| (to[axis] - from[axis]) / spanned[axis]);
     let length = along[0].hypot(along[1]);
     if length < HEAD[0] {

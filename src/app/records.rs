@@ -62,18 +62,43 @@ impl GdcmApp {
                 self.take_identified(&all, offered);
             }
             RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
+            RecordsCommand::ShowAdvanced(field) => self.state.records.advanced_field = Some(field),
             said => {
-                let channels = self.record_channels();
+                let channels = self.record_channels(condition);
                 if let Some(records) = self.state.records.conditions.get_mut(&condition) {
                     say(records, said, &channels);
                 }
+                self.follow_band(condition);
             }
         }
     }
 
-    /// The channels that records are to give: those of the dataset, found where it was said when the dataset was made of records.
-    fn record_channels(&self) -> RecordChannels {
+    /// The band that a condition is identified over: its own, or the study's.
+    fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
+        let of_study = self.state.study.settings.band;
+        let own = self.state.records.conditions.get(&condition).and_then(|records| records.band);
+        own.unwrap_or([of_study.min(), of_study.max()])
+    }
+
+    /// Brings the topics of a condition to the clock that its band takes, where that has changed.
+    fn follow_band(&mut self, condition: ConditionId) {
+        let [_, end] = self.identified_band(condition);
+        let known = self.state.records.conditions.get(&condition).map(|records| records.clock_band_end);
+        if known.is_none_or(|known| known == Some(end)) {
+            return;
+        }
+        let channels = self.record_channels(condition);
+        if let Some(records) = self.state.records.conditions.get_mut(&condition) {
+            records.follow_band(&channels);
+        }
+    }
+
+    /// The channels that the records of a condition are to give: those of the dataset, found where it was said when the dataset was made
+    /// of records; topics are brought to a clock for the band that is identified over.
+    fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
+        let [_, end] = self.identified_band(condition);
+        channels.resampling.band_end = Some(end);
         if let Some((_, said)) = self.said_channels.as_ref().filter(|(of, _)| self.loaded.path() == Some(of)) {
             let said: Vec<&ChannelRule> = said.inputs.iter().chain(&said.outputs).collect();
             for rule in channels.inputs.iter_mut().chain(&mut channels.outputs) {
@@ -134,6 +159,8 @@ impl GdcmApp {
     pub(super) fn look_for_records(&mut self) {
         let condition = self.state.condition();
         let id = condition.id();
+        self.follow_band(id);
+        let condition = self.state.condition();
         let display = &self.state.display;
         let is_compared = display.requirements_page == RequirementsPage::Histories;
         let is_shown = display.arrangement.is_shown(View::Records)
@@ -168,7 +195,8 @@ impl GdcmApp {
         name: String,
         read: impl FnOnce(&Dataset, &RecordChannels) -> Result<ReadRecords, FileError> + Send + 'static,
     ) {
-        let channels = self.record_channels();
+        let channels = self.record_channels(self.state.condition().id());
+        let clock_band_end = channels.resampling.band_end;
         let dataset = Arc::clone(self.state.study.file_dataset());
         let of = Arc::clone(&dataset);
         self.state.records.reading = Some(RecordsReading { name });
@@ -179,7 +207,7 @@ impl GdcmApp {
             }
             app.state.records.reading = None;
             match found {
-                Some(Ok(found)) => app.take_records(found),
+                Some(Ok(found)) => app.take_records(found, clock_band_end),
                 Some(Err(error)) => app.notify_error(error.to_string()),
                 None => {}
             }
@@ -194,13 +222,15 @@ impl GdcmApp {
         self.state.records.conditions.entry(id).or_insert_with(nothing)
     }
 
-    fn take_records(&mut self, found: ReadRecords) {
+    fn take_records(&mut self, found: ReadRecords, clock_band_end: Option<f64>) {
         let count: usize = found.rows.values().map(Vec::len).sum();
         let conditions = found.rows.len();
         for (id, rows) in found.rows {
             let records = self.records_of(id);
             // A record that is read again takes its place.
             records.rows.retain(|old| rows.iter().all(|new| new.table.name != old.table.name));
+            let is_known = records.rows.is_empty() || records.clock_band_end == clock_band_end;
+            records.clock_band_end = clock_band_end.filter(|_| is_known);
             records.rows.extend(rows);
             leave_out_copies(&mut records.rows);
             records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
@@ -225,14 +255,15 @@ impl GdcmApp {
     }
 
     fn identify_conditions(&mut self, conditions: &[ConditionId]) {
-        let (band, channels) = (self.state.study.settings.band, self.record_channels());
         if self.state.records.running.is_empty() {
             self.state.records.asked = 0;
         }
         let mut refusal = None;
         for id in conditions {
+            self.follow_band(*id);
+            let (band, channels) = (self.identified_band(*id), self.record_channels(*id));
             let Some(records) = self.state.records.conditions.get(id) else { continue };
-            match records.job(*id, [band.min(), band.max()], &channels) {
+            match records.job(*id, band, &channels) {
                 Ok(job) => {
                     let waiting = self.state.records.running.len();
                     self.state.records.running.retain(|other| other.condition != *id);
@@ -269,8 +300,10 @@ impl GdcmApp {
     }
 
     fn take_identified(&mut self, conditions: &[ConditionId], offered: OfferedModels) {
-        let channels = self.record_channels();
-        let of = |id: &ConditionId| Some((*id, self.state.records.conditions.get(id)?.taken(offered, &channels)?));
+        let of = |id: &ConditionId| {
+            let records = self.state.records.conditions.get(id)?;
+            Some((*id, records.taken(offered, &self.record_channels(*id))?))
+        };
         let taken: Vec<(ConditionId, Arc<AdoptedModels>)> = conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
             return self.notify_error("nothing was identified yet".to_owned());
@@ -311,17 +344,7 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::SetHold(signal, hold) => {
             records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
         }
-        RecordsCommand::SetBand(band) => {
-            records.band = band;
-            // Topics are brought to a clock that the band takes.
-            let mut channels = channels.clone();
-            channels.resampling.band_end = band.map(|[_, end]| end).or(channels.resampling.band_end);
-            for row in &mut records.rows {
-                if row.layout.is_resampled(&row.table, &channels) {
-                    *row = row.laid_out(row.layout.clone(), &channels);
-                }
-            }
-        }
+        RecordsCommand::SetBand(band) => records.band = band,
         RecordsCommand::SetSearch(search) => records.search = search,
         RecordsCommand::SetReferences(references) => records.references = references,
         RecordsCommand::AddPart(index, part_s) => add_part(records, index, part_s, channels),

@@ -35,7 +35,7 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
         let reason = format!("expected a name that ends in .html, found {found}; a browser prints the report as PDF");
         return Err(Failure::Option { option: "--out", reason });
     }
-    let records = arguments.histories.read(&study.dataset)?;
+    let records = arguments.histories.read(&study.dataset, study.settings.band)?;
     let (analysis, mut engine) = analysis_of(study, &arguments.study, false)?;
     let histories = match arguments.histories.records.as_slice() {
         [] => None,

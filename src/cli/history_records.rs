@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use gdcm_core::dataset::{Condition, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::dataset::{Band, Condition, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::Preparation;
 use gdcm_core::records::{
     LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, with_topics_joined,
@@ -24,8 +24,8 @@ pub struct HistoryArguments {
 }
 
 impl HistoryArguments {
-    /// The records of each condition; what is not taken is told on standard error.
-    pub(super) fn read(&self, dataset: &Dataset) -> Result<Vec<HistoryRecords>, Failure> {
+    /// The records of each condition, topics brought to a clock for this band; what is not taken is told on standard error.
+    pub(super) fn read(&self, dataset: &Dataset, band: Band) -> Result<Vec<HistoryRecords>, Failure> {
         if self.records.is_empty() {
             return Ok(Vec::new());
         }
@@ -35,7 +35,8 @@ impl HistoryArguments {
         if tables.is_empty() {
             return Err(Failure::nothing_in(&self.records, "record"));
         }
-        let channels = RecordChannels::of_dataset(dataset);
+        let mut channels = RecordChannels::of_dataset(dataset);
+        channels.resampling.band_end = Some(band.max());
         let tables = with_topics_joined(tables, &channels, &TimeWish::default());
         let records = tables.into_iter().filter_map(|table| record_of(table, dataset, &channels));
         let (of, mut records): (Vec<ConditionId>, Vec<LaidOutRecord>) = records.unzip();

@@ -158,19 +158,23 @@ impl IdentificationTask {
     /// A caution with the options that put right what it speaks of.
     fn note(&self, caution: &IdentificationCaution) -> CautionNote {
         let mut note = caution.note();
-        let IdentificationCaution::Contradiction { records, fault: Some(fault), .. } = caution else { return note };
-        let Some((_, record)) = records.last() else { return note };
+        let IdentificationCaution::Contradiction { records, .. } = caution else { return note };
         let channels = self.request.options.preparation.outputs.iter().enumerate();
         let signal = |(index, channel): (usize, &ChannelPreparation)| {
             let (role, name) = (ChannelSide::Output, channel.name.clone());
             Signal { role, index, name }
         };
         let outputs: Vec<Signal> = channels.map(signal).collect();
-        let options = fault.remedies(&outputs).into_iter().map(|(signal, remedy)| match remedy.factor {
-            1.0 => format!("--delay {record}:{signal}={:.3}", remedy.delay_s),
-            factor => format!("--factor {record}:{signal}={factor:.2}"),
+        let options = records.iter().filter_map(|of| {
+            let (record, fault) = (&of.name, of.fault.as_ref()?);
+            let options = fault.remedies(&outputs).into_iter().map(|(signal, remedy)| match remedy.factor {
+                1.0 => format!("--delay {record}:{signal}={:.3}", remedy.delay_s),
+                factor => format!("--factor {record}:{signal}={factor:.2}"),
+            });
+            Some(options.collect::<Vec<_>>().join(" "))
         });
-        note.text += &format!(" ({})", options.collect::<Vec<_>>().join(" "));
+        let options = options.collect::<Vec<_>>().join(" or ");
+        note.text += &if options.is_empty() { options } else { format!(" ({options})") };
         note
     }
 

@@ -75,7 +75,7 @@ pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChann
             let LayoutCaution::Copy { first } = why else { continue };
             let (record, text) = (copy.table.name.clone(), format!("{}: {why}", copy.table.name));
             caution(&text);
-            let note = CautionNote { code: "duplicate", record: Some(record), text, ..CautionNote::default() };
+            let note = CautionNote { code: "duplicate", records: vec![record], text, ..CautionNote::default() };
             copies.push((first.clone(), note));
         }
     }

@@ -31,7 +31,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     };
     outputs.check(&requirement_paths(out))?;
     make_directory(out)?;
-    let records = histories.read(&study.dataset)?;
+    let records = histories.read(&study.dataset, study.settings.band)?;
     let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
     let requirements =
         engine.requirements(&analysis, &KnownPoles::default(), &TerminalProgress::new("reading bandwidths"))?;

@@ -4,9 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use gdcm_core::assembly::standard_patterns;
-use gdcm_core::dataset::{BundleKind, RecordKind};
+use gdcm_core::dataset::{BundleKind, ConditionId, RecordKind};
 use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
 use gdcm_files::{embedded_example, example_records, load_dataset, records_of_bytes};
+use nalgebra::{Complex, DMatrix};
+use serde_json::{Value, json};
 
 use crate::commands::Desk;
 use crate::window::records::late_dataset;
@@ -283,7 +285,8 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         let line = said.lines().find(|line| line.contains(" contradict")).unwrap_or_else(|| panic!("{code}: {said}"));
         let file = fs::read_to_string(desk.path(&format!("{code}-first/identified.json"))).unwrap();
         assert!(file.contains(&format!("\"code\": \"{code}\"")) || file.contains(&format!("\"code\":\"{code}\"")));
-        let said = line.rsplit_once(&format!("({option} ")).unwrap().1.trim_end_matches(')');
+        // Of a pair the options of both stand there, those of the last behind.
+        let said = line.rsplit_once(&format!("{option} ")).unwrap().1.trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
         // A large delay comes out short (M14.16): what is left is asked again.
         let contrast = |said: &str| {
@@ -307,4 +310,64 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "x:Q=0.1",
     ]);
     assert!(ended.error.contains("\"x\" is none of the records"), "{ended:?}");
+}
+
+/// Magnitude of the first response of the first model of a file of identified models, at a frequency \[rad/s\].
+fn magnitude_db(identified: &Value, omega: f64) -> f64 {
+    let matrix = |name: &str| {
+        let rows = identified["models"][0][name].as_array().unwrap();
+        let row = |row: &Value| row.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect::<Vec<_>>();
+        let rows: Vec<Vec<f64>> = rows.iter().map(row).collect();
+        DMatrix::from_fn(rows.len(), rows[0].len(), |at, column| Complex::from(rows[at][column]))
+    };
+    let a = matrix("A");
+    let resolvent = DMatrix::identity(a.nrows(), a.nrows()) * Complex::new(0.0, omega) - a;
+    let states = resolvent.lu().solve(&matrix("B")).unwrap();
+    20.0 * (matrix("C") * states + matrix("D"))[(0, 0)].norm().log10()
+}
+
+#[test]
+fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
+    let desk = Desk::new();
+    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.mat");
+    let channels = ["--inputs", "M", "--outputs", "q [rad/s]", "--band", "2", "25", "--out", "out"];
+    let ended = desk.gdcm(&[&["identify", log.to_str().unwrap()], &channels[..]].concat());
+    assert_eq!(ended.status, 0, "{ended:?}");
+    assert!(
+        ended.error.contains("one record of 2 topics: M, q") && ended.error.contains("resampled to 106.1"),
+        "{ended:?}"
+    );
+    let identified = crate::read_json(&desk.path("out/identified.json"));
+    // Independent numpy code (M14.14).
+    for (omega, expected) in [(5.0, 35.9), (8.0, 30.8), (20.0, 22.6)] {
+        let found = magnitude_db(&identified, omega);
+        assert!((found - expected).abs() < 0.7, "{found} dB at {omega} rad/s, not {expected}");
+    }
+    assert_eq!(identified["cautions"], json!([]));
+}
+
+#[test]
+fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    let parts = ["--part", "0:20", "--part", "20:40", "--hold-out", "20:40", "--band", "0.5", "9"];
+    let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
+    let ended = desk.gdcm(&[&["identify", "flight_0.csv", "flight_1.csv"], &parts[..], &into[..]].concat());
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let identified = crate::read_json(&desk.path("out/identified.json"));
+    let said = |record: &Value| (record["part_s"].clone(), record["held_out"].clone());
+    let records: Vec<(Value, Value)> = identified["records"].as_array().unwrap().iter().map(said).collect();
+    let (first, second) = ((json!([0.0, 20.0]), json!(false)), (json!([20.0, 40.0]), json!(true)));
+    assert_eq!(records, [first.clone(), first, second.clone(), second]);
+    // What is used of each lies within it, at 25 Hz.
+    let used = &identified["records"][2]["used_s"][0];
+    assert!(used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0, "{used}");
+    let opened = load_dataset(&desk.path("out/late.json")).unwrap();
+    let entries = opened.dataset.condition(ConditionId(7)).unwrap().records();
+    let parts: Vec<_> = entries.iter().filter_map(|record| Some((record.part_s?, record.held_out))).collect();
+    let expected = [([0.0, 20.0], false), ([0.0, 20.0], false), ([20.0, 40.0], true), ([20.0, 40.0], true)];
+    assert_eq!(parts, expected);
+    // The whole of a record counts no more beside its parts, that of another does.
+    let wholes: Vec<_> = entries.iter().filter(|record| record.part_s.is_none()).map(|record| record.used).collect();
+    assert_eq!(wholes, [false, false, true, true]);
 }

@@ -47,7 +47,10 @@ struct IdentifiedText<'m> {
 #[derive(Serialize)]
 struct CautionText<'m> {
     code: &'static str,
+    /// The one that it is about.
     record: Option<&'m str>,
+    /// All that it is about.
+    records: &'m [String],
     channel: Option<&'m str>,
     /// Output and input.
     pair: Option<&'m [String; 2]>,
@@ -171,7 +174,8 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
 fn caution_text(of: &CautionNote) -> CautionText<'_> {
     CautionText {
         code: of.code,
-        record: of.record.as_deref(),
+        record: if let [one] = of.records.as_slice() { Some(one) } else { None },
+        records: &of.records,
         channel: of.channel.as_deref(),
         pair: of.pair.as_ref(),
         band_rad_s: of.band_rad_s,
@@ -300,10 +304,22 @@ mod tests {
         assert_eq!(text["validation"]["fit_percent"], serde_json::json!([]));
         assert_eq!(text["records"][0]["used_s"], serde_json::json!([[0.0, 60.0]]));
         let caution = serde_json::json!({
-            "code": "not-swept", "record": null, "channel": "PED", "pair": null, "band_rad_s": null,
+            "code": "not-swept", "record": null, "records": [], "channel": "PED", "pair": null, "band_rad_s": null,
             "text": "PED was not swept: its column is not identified"
         });
         assert_eq!(text["cautions"], serde_json::json!([caution]));
+    }
+
+    #[test]
+    fn a_caution_of_one_record_names_it_and_one_of_a_pair_names_both() {
+        let of = |names: &[&str]| {
+            let records = names.iter().map(|name| (*name).to_owned()).collect();
+            let bytes = written(&[CautionNote { code: "record", records, ..CautionNote::default() }]);
+            let text: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
+            (text["cautions"][0]["record"].clone(), text["cautions"][0]["records"].clone())
+        };
+        assert_eq!(of(&["lat_1"]), ("lat_1".into(), serde_json::json!(["lat_1"])));
+        assert_eq!(of(&["lat_1", "lat_2"]), (serde_json::Value::Null, serde_json::json!(["lat_1", "lat_2"])));
     }
 
     #[test]

@@ -1,26 +1,30 @@
 //! What an identification searches, where that is not left to the records: band, orders, past windows, Laguerre poles.
 
 use std::fmt::Display;
+use std::sync::Arc;
 
-use egui::{CollapsingHeader, Grid, Ui};
+use egui::{CollapsingHeader, ComboBox, Grid, Id, PopupCloseBehavior, RichText, Role as AccessRole, Ui};
 
-use crate::view::{Command, Palette, entry_ui, typed_number};
+use crate::view::{Command, Palette, entry_ui, named, typed_number};
 use gdcm_core::identification::{HIGHEST_ORDER, LONGEST_PAST, SearchSpace};
 use gdcm_core::units::number;
 
-use super::{Page, RecordsCommand};
+use super::{ConditionRecords, Page, RecordsCommand, kept};
 
 const FIELD_WIDTH: f32 = 150.0;
+/// Fields that cautions go to.
+pub(super) const ORDERS: &str = "orders";
+pub(super) const REFERENCES: &str = "references";
 
-/// A field for each, behind a heading; an empty one leaves it to the records.
-pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
+/// A field for each, behind a heading; an empty one leaves it to the records. Goes to `field` once that is there.
+pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, field: &mut Option<&'static str>, commands: &mut Vec<Command>) {
     let Page { state, records, palette } = page;
     let band = state.study.settings.band;
     let of_study = format!("{} {} (the study's)", number(band.min()), number(band.max()));
     let said = records.band.map_or_else(String::new, |[low, high]| format!("{} {}", number(low), number(high)));
     let search = &records.search;
     let lists: [(&str, String, &str, Sets); 3] = [
-        ("orders", listed(&search.orders), "by the records: 1 to 24", |search, list| {
+        (ORDERS, listed(&search.orders), "by the records: 1 to 24", |search, list| {
             search.orders = whole(list, HIGHEST_ORDER)?;
             Ok(())
         }),
@@ -35,7 +39,7 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
         }),
     ];
     let header = CollapsingHeader::new(palette.small("Advanced")).id_salt("advanced identification");
-    header.show(ui, |ui| {
+    header.open(field.is_some().then_some(true)).show(ui, |ui| {
         Grid::new("advanced identification").num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
             if let Some(text) = field_ui(ui, "band [rad/s]", &said, &of_study, palette) {
                 commands.push(match numbers(&text).and_then(|list| band_of(&list)) {
@@ -43,11 +47,8 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
                     Err(why) => Command::Refuse(why),
                 });
             }
-            let said = records.references.join(", ");
-            if let Some(text) = field_ui(ui, "references", &said, "columns that drove the loop", palette) {
-                let names = text.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty());
-                commands.push(RecordsCommand::SetReferences(names.collect()).into());
-            }
+            let is_wanted = *field == Some(REFERENCES);
+            references_ui(ui, page, is_wanted, commands);
             for (name, said, hint, sets) in lists {
                 if let Some(text) = field_ui(ui, name, &said, hint, palette) {
                     let mut wanted = search.clone();
@@ -58,7 +59,48 @@ pub(super) fn advanced_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comman
                 }
             }
         });
+        if let Some(name) = field.take() {
+            ui.scroll_to_cursor(None);
+            if name != REFERENCES {
+                let field = Id::unique(("entry", format!("Identification: {name}"))).with("field");
+                ui.memory_mut(|memory| memory.request_focus(field));
+            }
+        }
     });
+}
+
+/// Which columns are recorded references: those first whose names say that they may be.
+fn references_ui(ui: &mut Ui, page: Page<'_>, is_wanted: bool, commands: &mut Vec<Command>) {
+    let Page { records, palette, .. } = page;
+    ui.label(palette.small(REFERENCES));
+    let said = &records.references;
+    let text = if said.is_empty() { "none".to_owned() } else { said.join(", ") };
+    let list = ComboBox::from_id_salt(REFERENCES).width(FIELD_WIDTH).selected_text(text).truncate();
+    let list = list.close_behavior(PopupCloseBehavior::CloseOnClickOutside).show_ui(ui, |ui| {
+        let possible = possible_references(ui, records);
+        let unknown = said.iter().filter(|name| possible.iter().all(|(known, _)| known != *name));
+        for (name, is_named) in unknown.map(|name| (name, true)).chain(possible.iter().map(|(name, of)| (name, *of))) {
+            let mut is_chosen = said.contains(name);
+            let text = if is_named { RichText::new(name).strong() } else { RichText::new(name) };
+            if ui.checkbox(&mut is_chosen, text).changed() {
+                let others = said.iter().filter(|other| *other != name).chain(is_chosen.then_some(name));
+                commands.push(RecordsCommand::SetReferences(others.cloned().collect()).into());
+            }
+        }
+    });
+    if is_wanted {
+        list.response.request_focus();
+    }
+    let hint = "Columns of recorded signals that drove the loop from outside (M14.15)";
+    named(list.response.on_hover_text(hint), AccessRole::ComboBox, "Identification: references");
+    ui.end_row();
+}
+
+/// The columns of the first record used that may be references, and whether their names say so; those first.
+pub(super) fn possible_references(ui: &Ui, records: &ConditionRecords) -> Arc<Vec<(String, bool)>> {
+    let Some((_, row)) = records.used_rows().next() else { return Arc::default() };
+    let of_row = || row.possible_references().into_iter().map(|(name, is_named)| (name.to_owned(), is_named)).collect();
+    kept(ui, "possible references", &[Arc::clone(&row.table) as _], format!("{:?}", row.layout), of_row)
 }
 
 /// Takes a list over into what is searched, or says what is wrong with it.

@@ -81,8 +81,8 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
                 chart.notes.extend(models.iter().filter_map(|model| Some((model.fit_words(output)?, model.color))));
             }
             let channel = dataset.inputs().iter().chain(dataset.outputs()).nth(place).map(|of| of.name.as_str());
-            let of_channel = |(row, note): &(Option<usize>, CautionNote)| {
-                row.is_none_or(|row| row == records.chosen) && note.channel.as_deref() == channel
+            let of_channel = |(rows, note): &(Vec<usize>, CautionNote)| {
+                (rows.is_empty() || rows.contains(&records.chosen)) && note.channel.as_deref() == channel
             };
             let marks = records.cautions().filter(of_channel).map(|(_, note)| note.mark());
             chart.notes.extend(marks.map(|mark| (format!("⚠ {mark}"), palette.warning)));

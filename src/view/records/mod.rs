@@ -9,13 +9,15 @@ mod records_state;
 mod records_view;
 mod response;
 mod simulation;
+mod wanted_dataset;
 
 pub use condition_table::condition_table;
-pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState, WantedDataset};
+pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, RecordsState};
 pub use records_view::{records_header_ui, records_view_ui};
 pub use simulation::{TimeModel, simulation_jobs};
+pub use wanted_dataset::WantedDataset;
 
-use advanced::advanced_ui;
+use advanced::{ORDERS, REFERENCES, advanced_ui, possible_references};
 use condition_table::condition_table_ui;
 use histories::{Source, histories_ui, inputs_ui, kept};
 use outcome::{offered_menu_ui, outcome_ui};

@@ -5,15 +5,19 @@ use std::sync::Arc;
 use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::view::{Command, Palette, SMALL_SIZE};
-use gdcm_core::dataset::{BundleKind, ChannelRemedy, ChannelSide};
+use gdcm_core::dataset::{BundleKind, ChannelRemedy, ChannelSide, Pair};
 use gdcm_core::identification::{
-    ChannelPreparation, HELD_OUT, Hold, Identification, IdentificationCaution, IdentificationError, RecordCaution,
-    RecordFault, Signal,
+    ChannelPreparation, ContradictingRecord, HELD_OUT, Hold, Identification, IdentificationCaution,
+    IdentificationError, RecordCaution, RecordFault, Signal,
 };
+use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
 use gdcm_core::units::s_to_ms;
 
-use super::{BAD, CHI_SQUARED, ConditionRecords, Page, RecordsCommand, Source, kept};
+use super::{
+    BAD, CHI_SQUARED, ConditionRecords, ORDERS, Page, REFERENCES, RecordsCommand, RecordsPage, Source, kept,
+    possible_references,
+};
 
 /// How far the identification is, or what came of it.
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
@@ -34,7 +38,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     }
     if let Some([low, high]) = records.band {
         ui.label(palette.small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's")));
-        actions_ui(ui, vec![("Use the study's band".to_owned(), RecordsCommand::SetBand(None))], commands);
+        actions_ui(ui, vec![("Use the study's band".to_owned(), RecordsCommand::SetBand(None).into())], commands);
     }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
@@ -69,7 +73,8 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
             }
             summary_ui(ui, found, palette);
             for caution in &found.cautions {
-                caution_ui(ui, (&caution.to_string(), actions(records, caution)), palette, commands);
+                let actions = actions(ui, records, caution);
+                caution_ui(ui, (&caution.to_string(), actions), palette, commands);
             }
             late_channel_ui(ui, page, commands);
         }
@@ -145,12 +150,13 @@ fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Actio
     let known = records.found.as_ref().and_then(|(job, _)| job.request.options.preparation.channel(signal));
     let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
     let text = format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name);
-    (text, RecordsCommand::SetDelay(signal.clone(), delay_s))
+    (text, RecordsCommand::SetDelay(signal.clone(), delay_s).into())
 }
 
 /// Takes what is wrong with a record out of it, besides what had been taken out.
-fn put_right(records: &ConditionRecords, record: usize, name: &str, fault: &RecordFault) -> Option<Action> {
-    let row = records.row_of_record(record)?;
+fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Action> {
+    let ContradictingRecord { record, name, fault } = of;
+    let (row, fault) = (records.row_of_record(*record)?, fault.as_ref()?);
     let mut layout = records.rows[row].layout.clone();
     let signal = |(index, channel): (usize, &ChannelPreparation)| {
         let (role, name) = (ChannelSide::Output, channel.name.clone());
@@ -168,17 +174,17 @@ fn put_right(records: &ConditionRecords, record: usize, name: &str, fault: &Reco
         RecordFault::Gain(signal, factor) if *factor < 0.0 => format!("Turn {signal} of {name}"),
         RecordFault::Gain(signal, factor) => format!("Multiply {signal} of {name} by {factor:.2}"),
     };
-    Some((words, RecordsCommand::SetRemedies(row, remedies)))
+    Some((words, RecordsCommand::SetRemedies(row, remedies).into()))
 }
 
 /// What a button says, and what it asks for.
-type Action = (String, RecordsCommand);
+type Action = (String, Command);
 
 fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (text, command) in actions {
             if ui.small_button(text).clicked() {
-                commands.push(command.into());
+                commands.push(command);
             }
         }
     });
@@ -195,26 +201,50 @@ fn band_action(why: &IdentificationError, [lowest, highest]: [f64; 2]) -> Option
 
 fn narrower(band: [f64; 2]) -> Action {
     let text = format!("Identify from {:.2} to {:.1} rad/s", band[0], band[1]);
-    (text, RecordsCommand::SetBand(Some(band)))
+    (text, RecordsCommand::SetBand(Some(band)).into())
 }
 
-fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<Action> {
-    let leave_out = |record: usize, name: &str| {
-        let row = records.row_of_record(record);
-        row.map(|row| (format!("Leave {name} out"), RecordsCommand::SetUsed(row, false)))
-    };
+/// What can be done about a caution; nothing where only another flight helps.
+fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<Action> {
+    let show = |text: &str, page| (text.to_owned(), RecordsCommand::Show(page).into());
+    let order = || ("Say an order…".to_owned(), RecordsCommand::ShowAdvanced(ORDERS).into());
     match caution {
-        IdentificationCaution::UnlikeRecord { record, name, .. } => leave_out(*record, name).into_iter().collect(),
-        IdentificationCaution::Contradiction { records: of, fault, .. } => {
-            let mended = of.last().zip(fault.as_ref());
-            let mended = mended.and_then(|((record, name), fault)| put_right(records, *record, name, fault));
-            mended.into_iter().chain(of.iter().filter_map(|(record, name)| leave_out(*record, name))).collect()
+        IdentificationCaution::Records(caution) => actions_on_records(records, caution),
+        IdentificationCaution::UnlikeRecord { name, .. } | IdentificationCaution::Inadequate { record: name, .. } => {
+            leave_out(records, name).into_iter().collect()
         }
+        IdentificationCaution::Contradiction { records: of, .. } => {
+            let mended = of.iter().filter_map(|of| put_right(records, of));
+            mended.chain(of.iter().filter_map(|of| leave_out(records, &of.name))).collect()
+        }
+        IdentificationCaution::Short { lowest, periods, .. } => longer(records, lowest / periods).into_iter().collect(),
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],
-        IdentificationCaution::Records(RecordCaution::SampleHold { signal, hold_s, .. }) => {
+        IdentificationCaution::NotSwept { .. } | IdentificationCaution::MovedTogether { .. } => {
+            vec![show("Show the inputs", RecordsPage::Inputs)]
+        }
+        IdentificationCaution::Feedback { .. } => by_reference(ui, records),
+        IdentificationCaution::LeavesPoints { output, input, .. } => {
+            let pair = Pair { output: output.index, input: input.index };
+            vec![(format!("Show {output}/{input}"), Command::FocusPair(pair)), order()]
+        }
+        IdentificationCaution::HeldOut { records: held_out, .. } => held_out
+            .iter()
+            .flat_map(|name| fit_too(records, name).into_iter().chain(leave_out(records, name)))
+            .collect(),
+        IdentificationCaution::Unstable { .. } => vec![show("Show its poles", RecordsPage::Poles), order()],
+        _ => Vec::new(),
+    }
+}
+
+/// The same of what stands in the records themselves.
+fn actions_on_records(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Action> {
+    let inputs = || ("Show the inputs".to_owned(), RecordsCommand::Show(RecordsPage::Inputs).into());
+    let columns = || ("Say its column and factor…".to_owned(), RecordsCommand::Show(RecordsPage::Columns).into());
+    match caution {
+        RecordCaution::SampleHold { signal, hold_s, .. } => {
             let hold_s = *hold_s;
-            let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold));
+            let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold).into());
             let command = (signal.role == ChannelSide::Input)
                 .then(|| set(&format!("{} is a held command", signal.name), Hold::Command { hold_s }));
             let others = [
@@ -223,6 +253,48 @@ fn actions(records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<A
             ];
             command.into_iter().chain(others).collect()
         }
+        RecordCaution::AtLimit { record, .. } | RecordCaution::Stuck { record, .. } => {
+            leave_out(records, record).into_iter().collect()
+        }
+        RecordCaution::MovedTogether { .. } => vec![inputs()],
+        RecordCaution::UnlikelyUnit { .. } | RecordCaution::Copy { .. } => vec![columns()],
         _ => Vec::new(),
     }
+}
+
+/// Leaves a record out, where others are left to fit a model to.
+fn leave_out(records: &ConditionRecords, name: &str) -> Option<Action> {
+    let (index, _) = records.used_rows().find(|(_, row)| row.table.name == name)?;
+    let is_other = |(at, row): (usize, &LaidOutRecord)| at != index && !row.guess.held_out;
+    let text = || format!("Leave {name} out");
+    records.used_rows().any(is_other).then(|| (text(), RecordsCommand::SetUsed(index, false).into()))
+}
+
+/// Fits a model to a record that was held out, too.
+fn fit_too(records: &ConditionRecords, name: &str) -> Option<Action> {
+    let (index, _) = records.used_rows().find(|(_, row)| row.table.name == name)?;
+    Some((format!("Fit {name} too"), RecordsCommand::SetHeldOut(index, false).into()))
+}
+
+/// The band from the frequency on of which the longest record has five periods; it has one of `once` \[rad/s\].
+fn longer(records: &ConditionRecords, once: f64) -> Option<Action> {
+    /// A hair more, so that rounding does not say it again.
+    const PERIODS: f64 = 5.001;
+    let (job, _) = records.found.as_ref()?;
+    let [_, highest] = job.request.options.band;
+    (PERIODS * once < highest).then(|| narrower([PERIODS * once, highest]))
+}
+
+/// Most references that have a button of their own.
+const MOST_REFERENCES: usize = 3;
+
+/// The references that the names of columns propose, and the list of all columns.
+fn by_reference(ui: &Ui, records: &ConditionRecords) -> Vec<Action> {
+    let possible = possible_references(ui, records);
+    let named = possible.iter().filter(|(_, is_named)| *is_named).take(MOST_REFERENCES);
+    let take = |(name, _): &(String, bool)| {
+        (format!("By way of {name}"), RecordsCommand::SetReferences(vec![name.clone()]).into())
+    };
+    let other = ("Say a reference…".to_owned(), RecordsCommand::ShowAdvanced(REFERENCES).into());
+    named.map(take).chain([other].into_iter().filter(|_| !possible.is_empty())).collect()
 }

@@ -110,7 +110,7 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
     ui.horizontal(|ui| {
         ui.label(cost_of(records, index).map_or(RichText::new(""), |cost| cost_text(cost, palette)));
         let of_it: Vec<String> =
-            records.cautions().filter(|(row, _)| *row == Some(index)).map(|(_, note)| note.text).collect();
+            records.cautions().filter(|(rows, _)| rows.contains(&index)).map(|(_, note)| note.text).collect();
         if !of_it.is_empty() {
             let mark = ui.label(palette.small_warning("⚠"));
             named(mark.on_hover_text(of_it.join("\n\n")), AccessRole::Label, &format!("Cautions of {name}"));

@@ -7,20 +7,16 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_core::dataset::{ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
-use gdcm_core::records::{
-    ChannelList, ColumnUse, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish,
-    SaidChannel,
-};
+use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordLayout};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
-use gdcm_core::units::number;
 
-use crate::view::{Palette, Sorting, State, typed_number};
+use crate::view::{Palette, Sorting, State};
 
-use super::TimeModel;
+use super::{TimeModel, WantedDataset};
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -117,6 +113,8 @@ pub enum RecordsCommand {
     SetReferences(Vec<String>),
     /// Try these orders, past windows and poles.
     SetSearch(SearchSpace),
+    /// Unfold what is searched, and go to the field of this name.
+    ShowAdvanced(&'static str),
     /// Draw the response of a model to the same inputs, or not.
     ShowTimeModel(TimeModel, bool),
     /// Make the part of a record between two times \[s\] a record of its own, in place of the whole.
@@ -164,6 +162,8 @@ pub struct ConditionRecords {
     pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
     /// Whether something else was said since.
     pub changed: bool,
+    /// End of the band \[rad/s\] that topics were brought to a clock for; none where that is not known of all.
+    pub clock_band_end: Option<f64>,
 }
 
 impl ConditionRecords {
@@ -185,14 +185,30 @@ impl ConditionRecords {
         self.rows.iter().enumerate().filter(|(_, row)| row.used_flight().is_some())
     }
 
-    /// What speaks against what was identified, and of which row where it is of one; nothing once something else was said.
-    pub fn cautions(&self) -> impl Iterator<Item = (Option<usize>, CautionNote)> {
+    /// What speaks against what was identified, and of which rows where it is of some; nothing once something else was said.
+    pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let found = self.identification().filter(|_| !self.changed);
         found.into_iter().flat_map(|found| &found.cautions).map(|caution| {
             let note = caution.note();
             let named = |name: &String| self.rows.iter().position(|row| row.table.name == *name);
-            (note.record.as_ref().and_then(named), note)
+            (note.records.iter().filter_map(named).collect(), note)
         })
+    }
+
+    /// What cautions of a code say, with the sign of a caution and in a few words.
+    pub(super) fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
+        self.cautions().filter(move |(_, note)| note.code == code).map(|(_, note)| format!("⚠ {}", note.mark()))
+    }
+
+    /// Brings topics to the clock that the band takes which is identified over.
+    pub fn follow_band(&mut self, channels: &RecordChannels) {
+        self.clock_band_end = channels.resampling.band_end;
+        for row in &mut self.rows {
+            if row.layout.is_resampled(&row.table, channels) {
+                *row = row.laid_out(row.layout.clone(), channels);
+                self.changed = true;
+            }
+        }
     }
 
     /// The row of a record of the identification.
@@ -213,7 +229,7 @@ impl ConditionRecords {
         Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) }
     }
 
-    /// The job of what is said now; `channels` are those that the records give.
+    /// The job of what is said now, over a band \[rad/s\]; `channels` are those that the records give.
     ///
     /// # Errors
     /// In words: no record is used, all are held out, or one lacks a reference.
@@ -223,7 +239,6 @@ impl ConditionRecords {
         band: [f64; 2],
         channels: &RecordChannels,
     ) -> Result<IdentifyJob, String> {
-        let band = self.band.unwrap_or(band);
         let mut preparation = self.preparation();
         preparation.inputs.extend(self.references.iter().map(ChannelPreparation::named));
         let rows: Vec<LaidOutRecord> =
@@ -291,75 +306,6 @@ pub struct RecordsReading {
     pub name: String,
 }
 
-/// A dataset that is to be made of records, as typed.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct WantedDataset {
-    /// Inputs, as [`ChannelList`] reads them.
-    pub inputs: String,
-    /// Outputs, in the same way.
-    pub outputs: String,
-    /// Lower and upper end of the band \[rad/s\].
-    pub band: [String; 2],
-    /// Path of the dataset.
-    pub path: String,
-    /// The columns of the records, in words.
-    pub columns: Vec<String>,
-    /// Why it could not be made, in words.
-    pub problems: Vec<String>,
-}
-
-impl WantedDataset {
-    /// What is proposed for the records of a condition: the channels that the documentation of a system knows; others are to be
-    /// typed.
-    pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
-        let tables = || records.rows.iter().map(|row| row.table.as_ref());
-        let known = |inputs: bool| {
-            let of_side = |column: &&RecordColumn| match (column.side, column.meaning) {
-                (Some(side), _) => (side == ChannelSide::Input) == inputs,
-                (None, Some(meaning)) => ["LON", "LAT", "PED", "COL"].contains(&meaning) == inputs && meaning != "TARG",
-                (None, None) => false,
-            };
-            let name = |column: &RecordColumn| column.meaning.unwrap_or(&column.name).to_owned();
-            let mut names: Vec<String> = tables().flat_map(|table| &table.columns).filter(of_side).map(name).collect();
-            let mut seen = BTreeSet::new();
-            names.retain(|name| seen.insert(name.clone()));
-            names.join(", ")
-        };
-        // Topics that no channel has joined yet are records of their own, under the names of their variables.
-        let words = |table: &RecordTable, column: &RecordColumn| {
-            let topic = table.source.variable.as_ref().map_or(String::new(), |variable| format!("{variable}."));
-            let unit = column.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
-            format!("{topic}{}{unit}", column.name)
-        };
-        let columns: BTreeSet<String> =
-            tables().flat_map(|table| table.columns.iter().map(move |column| words(table, column))).collect();
-        Self {
-            inputs: known(true),
-            outputs: known(false),
-            band: [band.min(), band.max()].map(number),
-            path,
-            columns: columns.into_iter().collect(),
-            problems: Vec::new(),
-        }
-    }
-
-    /// The channels and the band that are asked for.
-    ///
-    /// # Errors
-    /// In words, what is no channel or no band.
-    pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
-        let rules = |side: &str, text: &str| {
-            let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
-            Ok::<_, String>(list.channels.iter().map(SaidChannel::rule).collect())
-        };
-        let (inputs, outputs) = (rules("inputs", &self.inputs)?, rules("outputs", &self.outputs)?);
-        let end = |text: &String| typed_number(text).ok().flatten().unwrap_or(f64::NAN);
-        let band = Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;
-        let resampling = ResamplingWish { band_end: Some(band.max()), ..ResamplingWish::default() };
-        Ok((RecordChannels { inputs, outputs, resampling, ..RecordChannels::default() }, band))
-    }
-}
-
 /// What the Records view holds. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
@@ -377,6 +323,8 @@ pub struct RecordsState {
     pub chooses_parts: bool,
     /// The input whose spectrogram is drawn.
     pub spectrogram: Option<usize>,
+    /// The field of what is searched that is to be gone to.
+    pub advanced_field: Option<&'static str>,
     /// Path of files, as typed.
     pub path: String,
     /// The files and folders that were added.

@@ -45,6 +45,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     let condition = state.condition().id();
     let mut path = std::mem::take(&mut state.records.path);
     let mut sorting = state.records.sorting;
+    let mut field = state.records.advanced_field;
     let nothing = ConditionRecords::default();
     let records = state.records.conditions.get(&condition).unwrap_or(&nothing);
     let page = Page { state, records, palette };
@@ -55,7 +56,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
         ScrollArea::vertical().id_salt("records").auto_shrink(false).show(ui, |ui| {
             source_ui(ui, state, &mut path, palette, commands);
             record_list_ui(ui, page, commands);
-            advanced_ui(ui, page, commands);
+            advanced_ui(ui, page, &mut field, commands);
             outcome_ui(ui, page, commands);
         });
     });
@@ -75,6 +76,7 @@ pub fn records_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     });
     state.records.path = path;
     state.records.sorting = sorting;
+    state.records.advanced_field = field;
 }
 
 /// One tab for each page, in one line that scrolls where it is too long.

@@ -97,17 +97,23 @@ fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static
     let names = [&dataset.outputs()[pair.output].name, &dataset.inputs()[pair.input].name];
     let concerns = move |note: &CautionNote| match (&note.pair, &note.channel, note.code) {
         (Some(of), ..) => [&of[0], &of[1]] == names,
-        (None, Some(channel), _) => note.record.is_none() && names.contains(&channel),
-        (None, None, code) => code.starts_with("feedback"),
+        (None, Some(channel), _) => note.records.is_empty() && names.contains(&channel),
+        (None, None, code) => code.starts_with("feedback") || code == "band-narrowed",
     };
     records.cautions().map(|(_, note)| note).filter(concerns).map(|note| note.mark())
 }
 
-/// Where in frequency a caution of all responses holds.
+/// Where in frequency a caution of all responses holds: at the lower end of short records, and beyond what any input shows.
 fn spans(Page { records, palette, .. }: Page<'_>) -> impl Iterator<Item = ChartSpan> {
     let color = palette.warning.gamma_multiply(0.1);
-    let of_all = records.cautions().filter(|(_, note)| note.pair.is_none() && note.code == "short");
-    of_all.filter_map(|(_, note)| note.band_rad_s).map(move |ends| ChartSpan { ends, color })
+    let band = records.found.as_ref().map_or([0.0; 2], |(job, _)| job.request.options.band);
+    let of_all = move |(_, note): (Vec<usize>, CautionNote)| match (note.code, note.band_rad_s) {
+        ("short", Some(ends)) => vec![ends],
+        ("band-narrowed", Some([low, high])) => vec![[band[0], low], [high, band[1]]],
+        _ => Vec::new(),
+    };
+    let ends = records.cautions().flat_map(of_all).filter(|[from, to]| from < to);
+    ends.map(move |ends| ChartSpan { ends, color })
 }
 
 /// Half of the 95 % interval of a magnitude or a phase, as far as it is drawn.
@@ -278,6 +284,7 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let title = "Stabilisation diagram: |λ| of the models of every order, at the best Laguerre pole and past window";
     let mut chart = Chart::new(title, ChartAxis::Frequency(unit), &across, "order");
     chart.verticals = records.found.iter().flat_map(|(job, _)| job.request.options.band).collect();
+    chart.notes.extend(records.marks("order-limit").map(|mark| (mark, palette.warning)));
     for stable in [false, true] {
         let points = found.stabilisation.iter().filter(|point| point.stable == stable && point.pole.norm() > 0.0);
         let place = |point: &StabilisationPoint| [point.pole.norm(), point.order as f64, 0.0];
@@ -302,6 +309,7 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     ui.label(palette.small(text));
     let mut chart = Chart::new("Poles of CT-PBSID, refined", ChartAxis::Linear, "Re λ [rad/s]", "Im λ [rad/s]");
     chart.verticals = vec![0.0];
+    chart.notes.extend(page.records.marks("unstable").map(|mark| (mark, palette.warning)));
     for determined in [false, true] {
         let poles = || found.poles.iter().filter(move |pole| pole.determined == determined);
         // A bar of a pole that is not determined would hide the others.

@@ -6,6 +6,7 @@ use gdcm::view::arrangement::View;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
 use gdcm_core::dataset::{Band, RecordKind};
 use gdcm_core::response::{FrequencyGrid, PreparedModel};
+use gdcm_core::study::setting;
 
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
@@ -327,12 +328,12 @@ fn a_simulation_is_computed_beside_the_window() {
 #[test]
 fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.csv");
-    std::fs::copy(data, folder.path().join("prbs.csv")).unwrap();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.mat");
+    std::fs::copy(data, folder.path().join("prbs.mat")).unwrap();
     let mut window = window();
     show(&mut window, View::Records);
-    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.csv")]));
-    wait_until(&mut window, "the record", |window| !state(window).records.sources.is_empty() && rows_shown(window) > 0);
+    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.mat")]));
+    wait_until(&mut window, "its two topics", |window| rows_shown(window) == 2);
     click(&mut window, "Make a dataset of them…");
     for (field, text) in [
         ("Inputs of the dataset", "moment=M"),
@@ -369,7 +370,8 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "The refined models");
     assert!(state(&window).study.taken_models().any(|(id, _)| id == of));
 
-    // Its sweep by way of the position reference that drove the loop: 31.4 dB at 8 rad/s, where the direct way is 1.3 dB off.
+    // Its sweep, through which gusts are fed back, and by way of the position reference that drove the loop: 31.4 dB at 8 rad/s, where
+    // the direct way is 1.3 dB off.
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/sweep.csv");
     give(&mut window, RecordsCommand::Add(vec![data]));
     wait_until(&mut window, "the sweep", |window| rows_shown(window) == 2);
@@ -378,8 +380,22 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     give(&mut window, RecordsCommand::Identify);
     let told = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(told.contains("sweep: there is no column \"nothing\""), "{told}");
-    click(&mut window, "Advanced");
-    type_into(&mut window, "Identification: references", "x0");
+    give(&mut window, RecordsCommand::SetReferences(Vec::new()));
+    click(&mut window, "Identify");
+    wait_until(&mut window, "the models of the sweep", |window| !state(window).records.conditions[&of].changed);
+    click(&mut window, "By way of x0");
+    assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
+    // The list of columns takes it back, and takes it again.
+    click(&mut window, "Say a reference…");
+    window.run_steps(10);
+    for expected in [&[][..], &["x0".to_owned()][..]] {
+        click(&mut window, "Identification: references");
+        window.get_by_role_and_label(egui::accesskit::Role::CheckBox, "x0").click();
+        window.run_steps(3);
+        assert_eq!(state(&window).records.conditions[&of].references, expected);
+        window.key_press(Key::Escape);
+        window.run_steps(3);
+    }
     click(&mut window, "Identify");
     wait_until(&mut window, "the models by reference", |window| {
         let records = &state(window).records.conditions[&of];
@@ -393,7 +409,7 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
 }
 
 /// Records of the condition shown.
-fn rows_shown(window: &Window) -> usize {
+pub(super) fn rows_shown(window: &Window) -> usize {
     let state = state(window);
     state.records.conditions.get(&state.condition().id()).map_or(0, |records| records.rows.len())
 }
@@ -423,4 +439,19 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
     assert!(row.problems.is_empty() && row.flight.is_some(), "{:?}", row.problems);
+    // They are on the clock that the band takes which is identified over: 20 4/3 of its end over 2 pi, as far as the rate has 50 Hz.
+    let rate_hz = |window: &Window| {
+        let row = &state(window).records.conditions[&ConditionId(1)].rows[0];
+        row.flight.as_ref().map_or(0.0, |flight| 1.0 / (flight.time_s[1] - flight.time_s[0]))
+    };
+    let of_band = |end: f64| (20.0 * 4.0 / 3.0 * end / std::f64::consts::TAU).min(50.0);
+    let is_at = |window: &Window, end: f64| (rate_hz(window) / of_band(end) - 1.0).abs() < 1e-6;
+    let of_study = state(&window).study.settings.band.max();
+    assert!(is_at(&window, of_study), "{} Hz", rate_hz(&window));
+    give(&mut window, RecordsCommand::SetBand(Some([0.5, 3.0])));
+    assert!(is_at(&window, 3.0), "{} Hz", rate_hz(&window));
+    give(&mut window, setting::BAND.to(Band::new(0.5, 6.0).unwrap()));
+    assert!(is_at(&window, 3.0), "its own band goes before the study's");
+    give(&mut window, RecordsCommand::SetBand(None));
+    assert!(is_at(&window, 6.0), "{} Hz", rate_hz(&window));
 }

@@ -139,12 +139,15 @@ impl Condition {
     }
 
     /// The same condition with these models for its identified bundle, and these flight records, each in place of the one of its
-    /// name, or behind the others.
+    /// name, or behind the others. A record of which parts come is no longer used, for evidence counts once.
     ///
     /// # Errors
     /// Those of [`Condition::new`] and [`Condition::with_records`].
     pub fn with_identified(&self, models: Vec<Model>, records: Vec<ConditionRecord>) -> Result<Self, ConditionError> {
         let mut kept = self.records.clone();
+        for whole in kept.iter_mut().filter(|whole| records.iter().any(|part| part.is_part_of(whole))) {
+            whole.used = false;
+        }
         for record in records {
             match kept.iter_mut().find(|other| other.name == record.name) {
                 Some(other) => *other = record,
@@ -359,6 +362,13 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
+    /// Whether it is a part of what another record is all of. The folders of their files may be said from different places.
+    fn is_part_of(&self, whole: &ConditionRecord) -> bool {
+        let name = |record: &Self| record.file.rsplit('/').next().map(str::to_owned);
+        let is_part = self.part_s.is_some() && whole.part_s.is_none();
+        is_part && name(self) == name(whole) && self.variable == whole.variable
+    }
+
     /// A record that is used, of an unknown manoeuvre.
     pub fn new(name: impl Into<String>, file: impl Into<String>) -> Self {
         Self {

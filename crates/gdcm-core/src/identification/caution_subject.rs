@@ -7,8 +7,8 @@ use super::*;
 pub struct CautionNote {
     /// What kind it is, in one word for programs.
     pub code: &'static str,
-    /// The record's name, where it is about one.
-    pub record: Option<String>,
+    /// The names of the records that it is about; none where it is about all.
+    pub records: Vec<String>,
     /// The channel's name, where it is about one.
     pub channel: Option<String>,
     /// Output and input, where it is about a response.
@@ -43,6 +43,11 @@ impl CautionNote {
             "gap" => "gaps",
             "duplicate" => "a duplicate",
             "resampled" => "resampled",
+            "held-out" => "not predicted",
+            "unstable" => "unstable, above the lines",
+            "order-limit" => "order too low",
+            "band-narrowed" => "shows nothing",
+            "short" => "short records",
             _ => "see the caution",
         }
     }
@@ -53,7 +58,7 @@ impl IdentificationCaution {
     #[must_use]
     pub fn note(&self) -> CautionNote {
         let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
-        let record = |code, name: &str| CautionNote { record: Some(name.to_owned()), ..of(code) };
+        let record = |code, name: &str| CautionNote { records: vec![name.to_owned()], ..of(code) };
         let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
         match self {
             Self::Records(caution) => CautionNote { text: self.to_string(), ..caution.note() },
@@ -65,18 +70,13 @@ impl IdentificationCaution {
             Self::BandNotShown { shown, .. } => CautionNote { band_rad_s: Some(*shown), ..of("band-narrowed") },
             Self::Vibration { signal, .. } => channel("vibration", signal),
             Self::Inadequate { record: name, signal, .. } => {
-                CautionNote { record: Some(name.clone()), ..channel("inadequate", signal) }
+                CautionNote { records: vec![name.clone()], ..channel("inadequate", signal) }
             }
             Self::UnlikeRecord { name, .. } => record("record", name),
-            Self::Contradiction { records, fault, .. } => {
-                let code = match fault {
-                    Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
-                    Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
-                    _ => "record",
-                };
-                let of_channel = fault.as_ref().and_then(RecordFault::signal).map(|signal| signal.name.clone());
-                let name = records.last().map(|(_, name)| name.clone());
-                CautionNote { record: name, channel: of_channel, ..of(code) }
+            Self::Contradiction { records, .. } => {
+                let (code, channel) = common_fault(records);
+                let names = records.iter().map(|of| of.name.clone()).collect();
+                CautionNote { records: names, channel: channel.map(|signal| signal.name.clone()), ..of(code) }
             }
             Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
             Self::Feedback { .. } => of("feedback-some"),
@@ -86,7 +86,7 @@ impl IdentificationCaution {
                 ..of("points")
             },
             Self::OrderLimit { narrower, .. } => CautionNote { band_rad_s: Some(*narrower), ..of("order-limit") },
-            Self::HeldOut { .. } => of("held-out"),
+            Self::HeldOut { records, .. } => CautionNote { records: records.clone(), ..of("held-out") },
             Self::Reweighed { .. } => of("reweighed"),
             Self::NotValidated { .. } => of("not-validated"),
             Self::Unstable { .. } => of("unstable"),
@@ -101,11 +101,24 @@ impl IdentificationCaution {
     }
 }
 
+/// What is wrong in one word, and with which channel, as far as that is the same whichever of the records is the wrong one.
+fn common_fault(records: &[ContradictingRecord]) -> (&'static str, Option<&Signal>) {
+    let of = |record: &ContradictingRecord| match &record.fault {
+        Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
+        Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
+        _ => "record",
+    };
+    let mut signals = records.iter().map(|record| record.fault.as_ref().and_then(RecordFault::signal));
+    let code = records.first().map(of).filter(|code| records.iter().all(|record| of(record) == *code));
+    let first = signals.next().flatten();
+    (code.unwrap_or("record"), first.filter(|_| signals.all(|signal| signal == first)))
+}
+
 impl RecordCaution {
     /// The caution with what it is about.
     fn note(&self) -> CautionNote {
         let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
-        let record = |code, name: &str| CautionNote { record: Some(name.to_owned()), ..of(code) };
+        let record = |code, name: &str| CautionNote { records: vec![name.to_owned()], ..of(code) };
         let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
         match self {
             Self::Resampled { record: name, .. } => record("resampled", name),
@@ -115,7 +128,7 @@ impl RecordCaution {
             Self::MovedTogether { signals, .. } => channel("collinear-inputs", &signals[1]),
             Self::Copy { copy, .. } => channel("copy", copy),
             Self::AtLimit { record: name, signal, .. } => {
-                CautionNote { record: Some(name.clone()), ..channel("clipped", signal) }
+                CautionNote { records: vec![name.clone()], ..channel("clipped", signal) }
             }
             Self::Stuck { record: name, signals, .. } => {
                 CautionNote { channel: signals.first().map(|signal| signal.name.clone()), ..record("stuck", name) }

@@ -90,14 +90,12 @@ pub enum IdentificationCaution {
         cost: f64,
     },
     /// A record wants another model than the others, or two records each another.
-    #[error("{}", contradiction(records, *contrast, fault.as_ref()))]
+    #[error("{}", contradiction(records, *contrast))]
     Contradiction {
-        /// The record, or the two, each with its number counted from 0 and its name.
-        records: Vec<(usize, String)>,
+        /// The record, or the two.
+        records: Vec<ContradictingRecord>,
         /// `F` of the worse; 1 is agreement.
         contrast: f64,
-        /// What is wrong with the last of them, as far as it can be told.
-        fault: Option<RecordFault>,
     },
     /// Gusts and noise went into the inputs by way of the feedback.
     #[error("{}", fed_back(*level, *share))]
@@ -144,7 +142,9 @@ pub enum IdentificationCaution {
          ({raw:.1} as it is). The aircraft was flown differently, or the records do not show enough"
     )]
     HeldOut {
-        /// Cost per degree of freedom on the held-out records.
+        /// Names of the held-out records.
+        records: Vec<String>,
+        /// Cost per degree of freedom on them.
         raw: f64,
         /// The same where the model may move within its own uncertainty.
         normalised: f64,
@@ -181,6 +181,27 @@ pub enum IdentificationCaution {
     },
 }
 
+impl IdentificationCaution {
+    /// Whether it says that the effects of inputs cannot be told apart.
+    pub(super) fn is_of_collinear_inputs(&self) -> bool {
+        matches!(self, Self::MovedTogether { .. } | Self::Records(RecordCaution::MovedTogether { .. }))
+    }
+
+    /// Whether another caution says no more than what comes of this one: a record that contradicts the others is unlike them, for
+    /// another reason than its noise; and where signs cancel in the mean of the records no input seems to be swept.
+    pub(super) fn explains(&self, other: &Self) -> bool {
+        let Self::Contradiction { records, .. } = self else { return false };
+        let is_turned =
+            |of: &ContradictingRecord| matches!(of.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0);
+        match other {
+            Self::UnlikeRecord { record, .. } => records.iter().any(|of| of.record == *record),
+            Self::Reweighed { .. } => true,
+            Self::NotSwept { .. } => records.iter().any(is_turned),
+            _ => false,
+        }
+    }
+}
+
 /// `below 0.80 rad/s and above 8.0 rad/s`: the ends of a band that are not shown.
 fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     let below = (shown[0] > band[0]).then(|| format!("below {:.2} rad/s", shown[0]));
@@ -195,22 +216,19 @@ fn responses_are(pairs: &[[Signal; 2]]) -> String {
 }
 
 /// Which records contradict which, and what would mend it.
-fn contradiction(records: &[(usize, String)], contrast: f64, fault: Option<&RecordFault>) -> String {
-    let words =
-        |subject: &str| fault.map_or_else(String::new, |fault| format!(" It looks as if in {subject} {fault}."));
-    match records {
-        [(_, one), (_, other)] => format!(
-            "{one} and {other} contradict one another (F {contrast:.0}; 1 is agreement); a third record would tell which is wrong.{}",
-            words(other)
-        ),
-        _ => {
-            let name = records.first().map_or("", |(_, name)| name.as_str());
-            format!(
-                "{name} contradicts the other records (F {contrast:.0}; 1 is agreement).{} Correct it, or leave the record out",
-                words("it")
-            )
-        }
+fn contradiction(records: &[ContradictingRecord], contrast: f64) -> String {
+    let names: Vec<&str> = records.iter().map(|of| of.name.as_str()).collect();
+    let faults: Vec<(&str, &RecordFault)> =
+        records.iter().filter_map(|of| Some((of.name.as_str(), of.fault.as_ref()?))).collect();
+    let agreement = format!("(F {contrast:.0}; 1 is agreement)");
+    if names.len() > 1 {
+        let words = faults.iter().map(|(name, fault)| format!(" If it is {name}, it looks as if there {fault}."));
+        let (names, words) = (listed(&names), words.collect::<String>());
+        return format!("{names} contradict one another {agreement}; a third record would tell which is wrong.{words}");
     }
+    let words = faults.first().map_or_else(String::new, |(_, fault)| format!(" It looks as if in it {fault}."));
+    let name = names.first().copied().unwrap_or_default();
+    format!("{name} contradicts the other records {agreement}.{words} Correct it, or leave the record out")
 }
 
 /// What the feedback does to the models.
@@ -381,7 +399,10 @@ pub(super) fn channel_cautions(
         if let Some(limit) = channel.limit.filter(|limit| greatest > *limit) {
             cautions.push(RecordCaution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
         }
+        // Stairs of an output in coarse steps are those steps.
+        let all = || records.iter().flat_map(|record| finite(record, &signal)).collect::<Vec<f64>>();
         if channel.hold == Hold::None
+            && (signal.role == ChannelSide::Input || !is_coarse(&all()))
             && let Some((share, hold_s)) = sample_hold(records.iter().map(of_record))
         {
             cautions.push(RecordCaution::SampleHold { signal, percent: 100.0 * share, hold_s });

@@ -53,6 +53,11 @@ pub(super) fn clipping(samples: &[f64]) -> Clipping {
     Clipping { share: share(at_limit), most: if held > HELD_SHARE { TOO_MANY.1 } else { TOO_MANY.0 } }
 }
 
+/// Whether a channel has so few values that to stand still is nothing unusual.
+pub(super) fn is_coarse(samples: &[f64]) -> bool {
+    coarseness(samples).is_some_and(|steps| steps > COARSE)
+}
+
 /// The least step between two values over the standard deviation; none where nothing moves.
 fn coarseness(samples: &[f64]) -> Option<f64> {
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
@@ -66,7 +71,7 @@ fn coarseness(samples: &[f64]) -> Option<f64> {
 }
 
 /// The samples of a channel that are numbers.
-fn finite(record: &FlightRecord, signal: &Signal) -> Vec<f64> {
+pub(super) fn finite(record: &FlightRecord, signal: &Signal) -> Vec<f64> {
     record.channel(signal).iter().copied().filter(|x| x.is_finite()).collect()
 }
 

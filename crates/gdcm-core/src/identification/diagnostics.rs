@@ -44,7 +44,9 @@ impl Diagnostics<'_> {
             cautions.push(IdentificationCaution::UnlikeRecord { record: fit.record, name, cost: fit.cost });
         }
         if let Some((raw, normalised)) = fits.held_out.filter(|(_, normalised)| *normalised > HELD_OUT[1]) {
-            cautions.push(IdentificationCaution::HeldOut { raw, normalised });
+            let held_out = fits.records.iter().filter(|fit| fit.held_out);
+            let records = held_out.map(|fit| self.record_name(fit.record)).collect();
+            cautions.push(IdentificationCaution::HeldOut { records, raw, normalised });
         }
         cautions
     }

@@ -128,8 +128,9 @@ fn report(
     let known = logged.as_ref().unwrap_or(&covariance);
     // By way of a reference nothing is fed back, and every record is seen as the same reference shows it.
     let is_direct = options.references == 0;
-    let feedback =
-        Some(()).filter(|()| is_direct).and_then(|()| Feedback::of(data, &fit.model, options.band, executor));
+    // Of inputs that were moved only together nothing tells what is fed back.
+    let is_told = is_direct && !data.cautions.iter().any(IdentificationCaution::is_of_collinear_inputs);
+    let feedback = Some(()).filter(|()| is_told).and_then(|()| Feedback::of(data, &fit.model, options.band, executor));
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
     let bands = known.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;
@@ -153,7 +154,9 @@ fn report(
         cautions.extend(diagnostics.adequacy(&fits));
         let first = refinement.before_weighing.as_ref().unwrap_or(fit);
         let of_records = RecordContrasts::of(&data.likelihood, &data.spectra, first).ok_or_else(no_model)?;
-        cautions.extend(of_records.caution(level > FeedbackLevel::None, &diagnostics));
+        let contradiction = of_records.caution(level > FeedbackLevel::None, &diagnostics);
+        cautions.retain(|of| contradiction.as_ref().is_none_or(|why| !why.explains(of)));
+        cautions.extend(contradiction);
         contrasts = of_records.contrasts;
     }
     cautions.extend(diagnostics.departures());

@@ -7,6 +7,8 @@ mod channel_check;
 mod diagnostics;
 mod feedback;
 mod flight_record;
+#[cfg(test)]
+mod fresh_flight_tests;
 mod identify;
 mod instrument;
 #[cfg(test)]

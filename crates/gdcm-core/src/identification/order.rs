@@ -234,8 +234,8 @@ impl Extent {
         let pasts: Vec<usize> =
             PASTS.into_iter().chain(long).filter(|past| rows >= LEAST_ROWS.0 * columns(*past)).collect();
         if pasts.is_empty() {
-            let longest = (LEAST_PAST..PASTS[0]).rev().find(|past| rows >= LEAST_ROWS.1 * columns(*past));
-            return vec![longest.unwrap_or(LEAST_PAST)];
+            let block_columns = (rows / (LEAST_ROWS.1 * self.channels() as f64)) as usize;
+            return vec![block_columns.saturating_sub(1).max(LEAST_PAST)];
         }
         pasts
     }
@@ -272,5 +272,8 @@ mod tests {
         assert_eq!(extent.pasts(), [8, 10, 12]);
         let short = Extent { radians: 20.0 * 12.0, ..extent };
         assert_eq!(short.pasts(), [5]);
+        // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up to p = 10.
+        let between = Extent { radians: 34.0 * 12.0, ..extent };
+        assert_eq!(between.pasts(), [10]);
     }
 }

@@ -271,8 +271,7 @@ impl RecordLength {
     fn caution(&self) -> Option<IdentificationCaution> {
         let Self { lowest, longest_s, better_s, .. } = *self;
         let periods = longest_s * lowest / TAU;
-        // To whole periods.
-        (periods < PERIODS.1 - 0.5).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s })
+        (periods < PERIODS.1).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s })
     }
 }
 

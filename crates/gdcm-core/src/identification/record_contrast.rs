@@ -99,6 +99,17 @@ pub struct RecordContrast {
     pub contrast: f64,
 }
 
+/// A record that contradicts others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContradictingRecord {
+    /// Which, counted from 0.
+    pub record: usize,
+    /// Its name.
+    pub name: String,
+    /// What is wrong with it where it is the wrong one, as far as it can be told.
+    pub fault: Option<RecordFault>,
+}
+
 /// The records of a fit that is the optimum of its likelihood.
 pub(super) struct RecordContrasts<'a> {
     likelihood: &'a Likelihood<'a>,
@@ -146,7 +157,7 @@ impl<'a> RecordContrasts<'a> {
         Some(Self { likelihood, spectra, fit, whole, root, contrasts })
     }
 
-    /// The record that contradicts the others, or the two that contradict one another, with what is wrong with the last named.
+    /// The record that contradicts the others, or the two that contradict one another, each with what would be wrong with it.
     pub(super) fn caution(&self, in_gusts: bool, names: &Diagnostics) -> Option<IdentificationCaution> {
         let mut worst = self.contrasts.clone();
         worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));
@@ -158,9 +169,12 @@ impl<'a> RecordContrasts<'a> {
         let alone = worst.len() > 2 && first.contrast >= ALONE * second.contrast;
         let mut records: Vec<usize> = worst.iter().take(if alone { 1 } else { 2 }).map(|of| of.record).collect();
         records.sort_unstable();
-        let fault = records.last().and_then(|record| self.fault(*record, names.options));
-        let records = records.into_iter().map(|record| (record, names.record_name(record))).collect();
-        Some(IdentificationCaution::Contradiction { records, contrast: first.contrast, fault })
+        let named = |record| {
+            let (name, fault) = (names.record_name(record), self.fault(record, names.options));
+            ContradictingRecord { record, name, fault }
+        };
+        let records = records.into_iter().map(named).collect();
+        Some(IdentificationCaution::Contradiction { records, contrast: first.contrast })
     }
 
     /// What is wrong with a record, by the fault that explains most of what the model leaves of it.

@@ -105,6 +105,8 @@ const UNUSUAL: f64 = 5.0;
 const USUAL: f64 = 0.95;
 /// An output that has fewer runs of equal samples than this was not seen to move.
 const RUNS_OF_A_MOVING: usize = 10;
+/// Equal samples at the least or the greatest value that are a run at a limit.
+const RUN_AT_A_LIMIT: usize = 5;
 /// Stamps that lie this share of a sample time beyond the last sample are at it, but for rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -266,21 +268,27 @@ impl Column {
     /// Runs of places `from..to` where the channel is frozen: it repeats the value before them.
     ///
     /// Frozen are more than 1 s of exactly equal samples, and more than five times the run of equal samples that 95 % of its
-    /// runs do not reach (so that a coarse or a slow sensor is not frozen), in a channel that moves at other times and while
+    /// runs do not reach (so that a slow sensor is not frozen), in a channel that moves at other times and while
     /// another channel changes at every second sample or more often. Only outputs freeze: an input that does not change is
-    /// held.
+    /// held. A coarse output stands still by itself, and one that comes back to its least or greatest value is at its limit.
     fn frozen(&self, clock: &Clock, others_move: &dyn Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
         let places: Vec<usize> = (0..self.values.len()).filter(|&k| self.values[k].is_finite()).collect();
         let equal: Vec<&[usize]> = places.chunk_by(|&a, &b| self.values[a] == self.values[b]).collect();
-        if equal.len() < RUNS_OF_A_MOVING {
+        let samples: Vec<f64> = places.iter().map(|place| self.values[*place]).collect();
+        if equal.len() < RUNS_OF_A_MOVING || is_coarse(&samples) {
             return Vec::new();
         }
+        let (least, greatest) =
+            samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(*x), most.max(*x)));
+        let stands_at =
+            |value: f64| equal.iter().filter(|run| run.len() >= RUN_AT_A_LIMIT && self.values[run[0]] == value).count();
+        let is_limit = |value: f64| (value == least || value == greatest) && stands_at(value) > 1;
         let usual = quantile(&mut equal.iter().map(|run| run.len() as f64).collect::<Vec<f64>>(), USUAL);
         let longest_s = FROZEN_S.max(UNUSUAL * usual * clock.sample_time_s).max(clock.longest_step_s);
         let frozen = |run: &&[usize]| {
             let (first, last) = (run[0], run[run.len() - 1]);
-            (clock.times[last] - clock.times[first] > longest_s && others_move(first, last))
-                .then_some((first + 1, last + 1))
+            let stands = clock.times[last] - clock.times[first] > longest_s && !is_limit(self.values[first]);
+            (stands && others_move(first, last)).then_some((first + 1, last + 1))
         };
         equal.iter().filter_map(frozen).collect()
     }

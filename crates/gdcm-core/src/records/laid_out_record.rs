@@ -27,6 +27,30 @@ const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdou
 /// Words that say so too, but stand in others ("value", "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
+/// What names of recorded references end with: pilot's and position references, setpoints, injected signals; short ones stand alone.
+const REFERENCES: [&str; 13] = [
+    "ref",
+    "reference",
+    "cmd",
+    "command",
+    "sp",
+    "setpoint",
+    "des",
+    "desired",
+    "targ",
+    "target",
+    "chirp",
+    "excitation",
+    "x0",
+];
+
+/// Whether a word of a name says that it is a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
+fn names_reference(name: &str) -> bool {
+    let lower = name.to_lowercase();
+    let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
+    words.any(|word| REFERENCES.iter().any(|end| word == *end || end.len() > 2 && word.ends_with(end)))
+}
+
 impl RecordGuess {
     /// Reads the names of a record, of its file, and of the file in an archive that it is.
     pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
@@ -119,6 +143,25 @@ impl LaidOutRecord {
         Self { used: entry.used, guess, ..record }
     }
 
+    /// The columns that may have driven a loop from outside (M14.15), which move and are neither the time nor a channel, and whether
+    /// their names say that they did; those first.
+    pub fn possible_references(&self) -> Vec<(&str, bool)> {
+        let RecordLayout { time, inputs, outputs } = &self.layout;
+        let channels = inputs.iter().chain(outputs).flatten().map(|used| used.column);
+        let time = time.and_then(|time| if let TimeBase::Column { column, .. } = time { Some(column) } else { None });
+        let taken: Vec<usize> = channels.chain(time).collect();
+        let columns = self.table.columns.iter().enumerate().filter(|(index, _)| !taken.contains(index));
+        let moves = |column: &RecordColumn| column.range().is_some_and(|(least, most)| least < most);
+        // What the documentation of a system knows as a signal of the aircraft is none.
+        let is_free = |column: &RecordColumn| column.meaning.is_none_or(|meaning| meaning == "TARG");
+        let mut found: Vec<(&str, bool)> = columns
+            .filter(|(_, column)| moves(column))
+            .map(|(_, column)| (column.name.as_str(), is_free(column) && names_reference(&column.name)))
+            .collect();
+        found.sort_by_key(|(_, is_named)| !is_named);
+        found
+    }
+
     /// Its samples, where it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         self.flight.as_ref().filter(|_| self.used)
@@ -159,7 +202,25 @@ fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::standard_patterns;
+    use crate::assembly::{ChannelRule, standard_patterns};
+
+    #[test]
+    fn columns_that_may_have_driven_the_loop_are_named_those_first_whose_names_say_so() {
+        let moving = |name: &str| RecordColumn::new(name, (0..60).map(|k| f64::from(k) * 0.02).collect());
+        let known = |name: &str, meaning| RecordColumn { meaning: Some(meaning), ..moving(name) };
+        let still = RecordColumn::new("yaw_ref", vec![1.0; 60]);
+        let columns = ["t", "M", "q", "theta", "x0", "RATE.RDes"].map(moving).to_vec();
+        let more = vec![known("SIDD.Targ", "TARG"), known("torque_setpoint", "LAT"), still];
+        let table = RecordTable::new("log", [columns, more].concat());
+        let rules = |name: &str| vec![ChannelRule::named(name)];
+        let channels = RecordChannels { inputs: rules("M"), outputs: rules("q"), ..RecordChannels::default() };
+        let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
+        let named = [("x0", true), ("RATE.RDes", true), ("SIDD.Targ", true)];
+        assert_eq!(
+            record.possible_references(),
+            [&named[..], &[("theta", false), ("torque_setpoint", false)]].concat()
+        );
+    }
 
     #[test]
     fn a_name_says_manoeuvre_condition_and_validation() {

@@ -15,8 +15,28 @@ impl RecordTable {
     /// Which record of a file, or of a folder, it is that its topics make together.
     pub const TOPICS: &'static str = "its topics";
 
+    /// The record that topics make under this name: all of them as [`Self::TOPICS`], or those of one of several logs as
+    /// "its topics, log_7".
+    pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
+        if variable == Self::TOPICS {
+            return Some(Self::of_topics(tables));
+        }
+        let log = variable.strip_prefix(Self::TOPICS)?.strip_prefix(", ")?;
+        let logs = logs_of(&topic_names(tables));
+        let of_log = tables.iter().zip(logs).filter(|(_, of)| of == log).map(|(table, _)| table.clone());
+        let of_log: Vec<RecordTable> = of_log.collect();
+        (!of_log.is_empty()).then(|| Self::of_log(&of_log, log))
+    }
+
+    /// The topics of one of several logs, side by side.
+    fn of_log(tables: &[RecordTable], log: &str) -> RecordTable {
+        let joined = Self::of_topics(tables);
+        let variable = Some(format!("{}, {log}", Self::TOPICS));
+        RecordTable { name: log.to_owned(), source: RecordSource { variable, ..joined.source }, ..joined }
+    }
+
     /// The topics of one record, side by side; tables without a time are left out, and that is said.
-    pub fn of_topics(tables: &[RecordTable]) -> RecordTable {
+    fn of_topics(tables: &[RecordTable]) -> RecordTable {
         let first = tables.first();
         let file = first.map(|table| table.source.file.as_str()).unwrap_or_default();
         let one_file = tables.iter().all(|table| table.source.file == file);
@@ -29,7 +49,7 @@ impl RecordTable {
             source: RecordSource { file: file.to_owned(), sha256, variable: Some(Self::TOPICS.to_owned()) },
             ..RecordTable::new(if stem.is_empty() { "topics" } else { stem }, Vec::new())
         };
-        let names: Vec<String> = tables.iter().map(|table| topic_name(table, one_file)).collect();
+        let names = topic_names(tables);
         let prefix = common_prefix(&names);
         let seconds = seconds_by_name(tables);
         let (mut taken, mut left_out) = (Vec::new(), Vec::new());
@@ -115,7 +135,7 @@ impl RecordTable {
 }
 
 /// Tables of which several are topics of one record, as such: in each file or folder those that lack a channel and have all of them
-/// together. The rest is as it was.
+/// together; where these are topics of several logs, so that channels have several columns, those of each log. The rest is as it was.
 pub fn with_topics_joined(tables: Vec<RecordTable>, channels: &RecordChannels, time: &TimeWish) -> Vec<RecordTable> {
     let lacks = |table: &RecordTable| {
         let problems = RecordLayout::proposed(table, channels, time).problems;
@@ -132,12 +152,26 @@ pub fn with_topics_joined(tables: Vec<RecordTable>, channels: &RecordChannels, t
     }
     let mut joined: BTreeMap<usize, RecordTable> = BTreeMap::new();
     let mut gone = vec![false; tables.len()];
-    for group in groups.into_values().filter(|group| group.len() > 1) {
-        let topics: Vec<RecordTable> = group.iter().map(|index| tables[*index].clone()).collect();
-        let together = RecordTable::of_topics(&topics);
-        if !together.columns.is_empty() && !lacks(&together) {
+    let of_group = |group: &[usize]| group.iter().map(|index| tables[*index].clone()).collect::<Vec<_>>();
+    let mut join = |group: &[usize], together: RecordTable| {
+        let is_record = !together.columns.is_empty() && !lacks(&together);
+        if is_record {
             group.iter().for_each(|index| gone[*index] = true);
             joined.insert(group[0], together);
+        }
+        is_record
+    };
+    for group in groups.into_values().filter(|group| group.len() > 1) {
+        let topics = of_group(&group);
+        if join(&group, RecordTable::of_topics(&topics)) {
+            continue;
+        }
+        let mut of_logs: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for (index, log) in group.iter().zip(logs_of(&topic_names(&topics))) {
+            of_logs.entry(log).or_default().push(*index);
+        }
+        for (log, group) in of_logs.into_iter().filter(|(log, group)| !log.is_empty() && group.len() > 1) {
+            join(&group, RecordTable::of_log(&of_group(&group), &log));
         }
     }
     let tables = tables.into_iter().enumerate();
@@ -165,6 +199,39 @@ fn group_of(source: &RecordSource) -> String {
     }
 }
 
+/// What each of the topics is called.
+fn topic_names(tables: &[RecordTable]) -> Vec<String> {
+    let first = tables.first().map(|table| table.source.file.as_str());
+    let one_file = tables.iter().all(|table| Some(table.source.file.as_str()) == first);
+    tables.iter().map(|table| topic_name(table, one_file)).collect()
+}
+
+/// Marks between the words of a name.
+const MARKS: [char; 4] = ['_', '-', '.', ' '];
+
+/// The log that each topic is of: "log_7" of "log_7_rates" beside "log_8_rates". A topic begins at the first mark behind which another
+/// name is the same; one that only its own log has is of the longest log that its name begins with. Nothing where there is none.
+fn logs_of(names: &[String]) -> Vec<String> {
+    let parts = |name: &str| name.match_indices(MARKS).map(|(at, _)| at).collect::<Vec<usize>>();
+    let mut ends: BTreeMap<&str, usize> = BTreeMap::new();
+    for name in names {
+        parts(name).into_iter().for_each(|at| *ends.entry(&name[at..]).or_default() += 1);
+    }
+    let log = |name: &String| {
+        let at = parts(name).into_iter().find(|at| ends.get(&name[*at..]).is_some_and(|count| *count > 1));
+        name[..at.unwrap_or(0)].to_owned()
+    };
+    let logs: Vec<String> = names.iter().map(log).collect();
+    let is_log = |log: &&String| !log.is_empty() && logs.iter().filter(|other| other == log).count() > 1;
+    let known: Vec<&String> = logs.iter().filter(is_log).collect();
+    let of_topic = |(name, log): (&String, &String)| {
+        let begins = |log: &&&String| name.strip_prefix(log.as_str()).is_some_and(|rest| rest.starts_with(MARKS));
+        let own = || known.iter().filter(begins).max_by_key(|log| log.len()).map(|log| (*log).clone());
+        if is_log(&log) { log.clone() } else { own().unwrap_or_default() }
+    };
+    names.iter().zip(&logs).map(of_topic).collect()
+}
+
 /// The variable of a file, or the file of a folder, without its ending.
 fn topic_name(table: &RecordTable, one_file: bool) -> String {
     let source = &table.source;
@@ -181,7 +248,7 @@ fn common_prefix(names: &[String]) -> usize {
     let Some(first) = names.first().filter(|_| names.len() > 1) else { return 0 };
     let same = |name: &String| first.bytes().zip(name.bytes()).take_while(|(a, b)| a == b).count();
     let length = names.iter().skip(1).map(same).min().unwrap_or(0);
-    first.as_bytes()[..length].iter().rposition(|byte| matches!(byte, b'_' | b'-' | b'.' | b' ')).map_or(0, |at| at + 1)
+    first.as_bytes()[..length].iter().rposition(|byte| MARKS.contains(&char::from(*byte))).map_or(0, |at| at + 1)
 }
 
 /// Seconds in a unit of the stamps, by the name of their column: topics of one log count alike, and only fast ones tell the unit by
@@ -292,6 +359,31 @@ mod tests {
         assert_eq!(names(&joined[0]), ["status.armed", "rates.p", "rates.q", "torque.M"]);
         assert_eq!((joined[0].name.as_str(), joined[0].source.file.as_str()), ("fly", "fly"));
         assert_eq!(joined[0].columns[0].topic.as_ref().unwrap().time_s[1], 5.0, "microseconds, as the fast ones tell");
+    }
+
+    #[test]
+    fn topics_of_several_logs_in_one_folder_are_a_record_of_each_log() {
+        let of_log = |log: &str, more: &str| {
+            let file = |topic: &str| format!("fly/{log}_{topic}.csv");
+            vec![
+                topic(&file("vehicle_rates_0"), None, &["p", "q"], 0.01),
+                topic(&file("vehicle_torque_0"), None, &["M"], 0.02),
+                topic(&file(more), None, &["state"], 1.0),
+            ]
+        };
+        let tables = [of_log("12_30_05", "esc_status_0"), of_log("12_41_55", "vehicle_status_0")].concat();
+        let joined = with_topics_joined(tables.clone(), &channels(), &TimeWish::default());
+        let found: Vec<&str> = joined.iter().map(|table| table.name.as_str()).collect();
+        assert_eq!(found, ["12_30_05", "12_41_55"]);
+        assert_eq!(
+            names(&joined[0]),
+            ["vehicle_rates_0.p", "vehicle_rates_0.q", "vehicle_torque_0.M", "esc_status_0.state"]
+        );
+        for log in &joined {
+            let again = RecordTable::of_topics_called(&tables, log.source.variable.as_deref().unwrap()).unwrap();
+            assert_eq!(&again, log, "a dataset finds each again by its name");
+        }
+        assert_eq!(RecordTable::of_topics_called(&tables, "its topics, 12_50_00"), None);
     }
 
     #[test]

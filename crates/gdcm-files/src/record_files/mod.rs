@@ -72,8 +72,8 @@ pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Resul
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
         let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
-        let together = || RecordTable::of_topics(&found.tables);
-        let record = record.or_else(|| (*variable == Some(RecordTable::TOPICS)).then(together));
+        let together = || variable.and_then(|variable| RecordTable::of_topics_called(&found.tables, variable));
+        let record = record.or_else(together);
         record.ok_or_else(|| FileError::NoRecord { path: path.to_owned(), record: variable.map(str::to_owned), held })
     };
     Ok(variables.iter().map(record).collect())

@@ -1,0 +1,67 @@
+//! What is said of identified models in the Records view: marks at their places, and buttons that act.
+
+use std::fs;
+
+use super::records::late_dataset;
+use super::views::show;
+use super::*;
+use gdcm::view::records::ConditionRecords;
+use serde_json::{Value, json};
+
+const OF: ConditionId = ConditionId(7);
+
+/// The window on four flights of which the last is held out and was flown with outputs of another size; the band reaches far beyond
+/// the sweeps.
+fn doubtful() -> (Window, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = late_dataset(folder.path());
+    let last = folder.path().join("flight_3.csv");
+    let larger = |line: &str| {
+        let cells = line.split(',').enumerate().map(|(at, cell)| match cell.parse::<f64>() {
+            Ok(value) if at > 2 => (1.6 * value).to_string(),
+            _ => cell.to_owned(),
+        });
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    fs::write(&last, fs::read_to_string(&last).unwrap().lines().map(larger).collect::<String>()).unwrap();
+    let mut dataset: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    dataset["conditions"][0]["records"][3]["held_out"] = json!(true);
+    fs::write(&path, dataset.to_string()).unwrap();
+    let mut window = window();
+    open_by_path(&mut window, &path);
+    show(&mut window, View::Records);
+    let records = |window: &Window| state(window).records.conditions.get(&OF).map_or(0, |of| of.rows.len());
+    wait_until(&mut window, "the records", |window| records(window) == 4);
+    window.get_by_label("Identify").click();
+    wait_until(&mut window, "the models", |window| state(window).records.conditions[&OF].found.is_some());
+    settle(&mut window);
+    (window, folder)
+}
+
+/// Presses a button that the list of records may have scrolled out of sight.
+fn press(window: &mut Window, label: &str) {
+    window.get_by_label(label).click_accesskit();
+    window.run_steps(3);
+}
+
+fn records(window: &Window) -> &ConditionRecords {
+    &state(window).records.conditions[&OF]
+}
+
+#[test]
+fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
+    let (mut window, _folder) = doubtful();
+    let codes: Vec<&str> = records(&window).cautions().map(|(_, note)| note.code).collect();
+    assert!(codes.contains(&"held-out") && codes.contains(&"band-narrowed"), "{codes:?}");
+    // At the record that is not predicted, and at no other.
+    window.get_by_label("Cautions of flight 3");
+    assert!(window.query_by_label("Cautions of flight 1").is_none());
+    // Beyond what the sweeps show.
+    click(&mut window, "Page Response");
+    window.get_by_label_contains("⚠ shows nothing");
+    press(&mut window, "Fit flight 3 too");
+    assert!(records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed);
+    assert!(window.query_by_label("Cautions of flight 3").is_none(), "what was said is out of date");
+    press(&mut window, "Leave flight 3 out");
+    assert!(!records(&window).rows[3].used);
+}

@@ -93,11 +93,11 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     // On the terminal too: where no window comes, that is all there is.
     trouble.iter().for_each(|words| eprintln!("error: {words}"));
     if let Some(reason) = missing_display() {
-        let status = if trouble.is_some() { WRONG_FILE } else { NO_WINDOW };
-        if trouble.is_none() {
-            eprintln!("error: {}", no_window(&reason));
+        if trouble.is_some() {
+            return ExitCode::from(WRONG_FILE);
         }
-        return ExitCode::from(status);
+        eprintln!("error: {}", no_window(&reason));
+        return ExitCode::from(NO_WINDOW);
     }
     if let Err(reason) = start_threads() {
         eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})")));

@@ -103,7 +103,6 @@ pub(super) enum ChipEvent {
 }
 
 /// All chips of a plot.
-#[derive(Clone, Copy)]
 pub(super) struct Chips<'a> {
     /// What tells them from those of other plots.
     pub(super) plot: &'a str,

@@ -35,3 +35,22 @@ fn without_a_display_one_line_names_the_headless_command() {
     assert_eq!(words.trim_end().lines().count(), 1, "{words}");
     assert!(words.contains("no display") && words.contains("gdcm analyze"), "{words}");
 }
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_a_file_that_is_wrong_is_told_on_the_terminal_with_its_own_status() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.json");
+    std::fs::write(&path, "{\"format\": ").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))
+        .arg(&path)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .unwrap();
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{words}");
+    assert_eq!(words.matches("error: ").count(), 1, "{words}");
+    assert!(words.contains("broken.json"), "{words}");
+}

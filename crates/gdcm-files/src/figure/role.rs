@@ -111,7 +111,7 @@ impl Role {
             Self::Nominal if rejected => line(Hue::Nominal, 1.3, Dash::Dotted),
             Self::Nominal => line(Hue::Nominal, 1.8, Dash::DashDot),
             Self::Perturbed => Stroke::solid(Color::of(Hue::Perturbed).tint(80), 0.8),
-            Self::Representative => line(Hue::Perturbed, 2.0, Dash::Solid),
+            Self::Representative => line(Hue::Perturbed, 1.4, Dash::Solid),
             Self::Identified => line(Hue::Identified, 1.2, Dash::Short),
             // Wide: it is seen below the corrected curve that is to lie on it.
             Self::IdentifiedRepresentative => line(Hue::Identified, 4.0, Dash::Solid),

@@ -70,7 +70,8 @@ fn a_click_on_a_mark_is_of_that_model() {
     show(&mut window, View::Requirements);
     let requirements = shown_requirements(&mut window);
     let p_lat = pair(&window, "P", "LAT");
-    let role = RequirementRole::Physics;
+    // Without leads the corrected models' marks lie on the physics models'.
+    let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
     // The one that lies farthest from all other marks: nothing hides it.
     let places = |of: &BandwidthFinding| gdcm_files::figure::bandwidth_place(of);

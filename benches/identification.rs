@@ -59,7 +59,7 @@ impl Progress for Stages {
 
 fn main() {
     let dataset = embedded_example().expect("the embedded example is a dataset").dataset;
-    let channels = RecordChannels::of_dataset(&dataset);
+    let channels = RecordChannels::of_dataset(&dataset).of_named_records();
     let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip");
     let tables = read_records(&[archive], &Silent).expect("the archive is there").tables;
     let records: Vec<LaidOutRecord> =

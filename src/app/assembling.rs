@@ -4,7 +4,7 @@ use gdcm_core::message_text::sanitized_path;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use crate::view::FormKind;
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
@@ -33,26 +33,6 @@ impl Sources {
     }
 }
 
-/// The newest thread that reads models: answers of others are late.
-#[derive(Default)]
-pub(super) struct ModelReader {
-    newest: u64,
-    stop: Arc<AtomicBool>,
-}
-
-impl ModelReader {
-    /// Gives up what is being read.
-    fn stop(&self) {
-        self.stop.store(true, Ordering::Release);
-    }
-}
-
-impl Drop for ModelReader {
-    fn drop(&mut self) {
-        self.stop();
-    }
-}
-
 /// Tells the window which file is read.
 struct Teller {
     number: u64,
@@ -66,7 +46,7 @@ impl Teller {
     fn tell(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
         let number = self.number;
         self.replies.send(move |app| {
-            if let Some(bench) = app.state.assembling.as_mut().filter(|_| number == app.models.newest) {
+            if let Some(bench) = app.state.assembling.as_mut().filter(|_| app.models.is_newest(number)) {
                 change(&mut bench.reading);
             }
         });
@@ -100,7 +80,7 @@ impl GdcmApp {
         match command {
             AssemblingCommand::Open => {}
             AssemblingCommand::Close => {
-                self.models.stop();
+                self.models.give_up();
                 self.state.assembling = None;
             }
             AssemblingCommand::AskFolder => self.ask_path(DialogPurpose::ModelFolder, String::new()),
@@ -129,10 +109,7 @@ impl GdcmApp {
     /// Reads models in a thread, tables by the headings said of them.
     fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
-        self.models.stop();
-        let stop = Arc::<AtomicBool>::default();
-        self.models = ModelReader { newest: self.models.newest + 1, stop: Arc::clone(&stop) };
-        let number = self.models.newest;
+        let (number, stop) = self.models.begin();
         let teller = Teller { number, replies: self.replies.clone(), stop, told: Cell::new(0) };
         let read = move || {
             let found = read_models(sources.paths(), &headings, &teller);
@@ -142,7 +119,7 @@ impl GdcmApp {
             bench.reading = Some(Reading::default());
         }
         self.in_thread("the reading of models", read, move |app, read| {
-            let Some(bench) = app.state.assembling.as_mut().filter(|_| number == app.models.newest) else { return };
+            let Some(bench) = app.state.assembling.as_mut().filter(|_| app.models.is_newest(number)) else { return };
             bench.reading = None;
             match read {
                 Some((sources, Ok(found))) => app.take_models(sources, found),
@@ -156,7 +133,7 @@ impl GdcmApp {
         let Some(bench) = &mut self.state.assembling else { return };
         let paths = match sources {
             Sources::More(paths) => paths,
-            Sources::Again(_) if self.models.stop.load(Ordering::Acquire) => {
+            Sources::Again(_) if self.models.is_stopped() => {
                 return self.done("stopped: the models are those that were read before".to_owned());
             }
             Sources::Again(paths) => {

@@ -8,6 +8,7 @@ use crate::view::assembling::AssemblingCommand;
 use crate::view::records::RecordsCommand;
 use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, RequirementTable, State};
 use gdcm_core::study::{Difference, Study};
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
     file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
@@ -92,6 +93,7 @@ impl GdcmApp {
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
+        self.record_reader.give_up();
         // Request numbers go on, so that late answers about the old dataset are told apart.
         self.state.results.requested = requested;
         self.state.results.received = requested;
@@ -136,22 +138,27 @@ impl GdcmApp {
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
         let name = sanitized_path(&path);
-        let read = move || match moved {
-            Some(dataset) => open_study_of(&path, &dataset).map(Opened::Study),
-            None => load_any(&path),
+        let read = move |budget: &ReadingBudget<'_>| match moved {
+            Some(dataset) => open_study_of(&path, &dataset, budget).map(Opened::Study),
+            None => load_any(&path, budget),
         };
         self.read(purpose, name, read);
     }
 
-    /// Reads in a thread of its own.
+    /// Reads in a thread of its own, within the budget of a file, in place of what was being opened.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
         name: String,
-        read: impl FnOnce() -> Result<Opened, FileError> + Send + 'static,
+        read: impl FnOnce(&ReadingBudget<'_>) -> Result<Opened, FileError> + Send + 'static,
     ) {
         self.state.opening = Some(name);
+        let (number, stop) = self.opener.begin();
+        let read = move || read(&ReadingBudget::default().stopped_by(stop));
         self.in_thread("the reading of a file", read, move |app, opened| {
+            if !app.opener.is_newest(number) {
+                return;
+            }
             app.state.opening = None;
             opened.into_iter().for_each(|opened| app.answer_opened(purpose, opened));
         });

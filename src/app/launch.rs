@@ -14,8 +14,9 @@ use crate::executor::{Pool, start_threads};
 use crate::view::assembling::AssemblingCommand;
 use crate::view::start_page::OpensWith;
 use crate::view::{Command, Preferences};
-use gdcm_core::message_text::{sanitized, sanitized_path};
+use gdcm_core::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_core::study::{Engine, LIVE_PROOF};
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
 
 use super::threads::{self, Fault, caught};
@@ -83,6 +84,7 @@ impl Setup {
 /// A folder, or a file of another program, is opened to put its models together.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let models = path.clone().filter(|path| holds_models(path));
+    let command = headless(path.as_deref(), models.is_some());
     let (opened, trouble) = match load(path.filter(|_| models.is_none())) {
         (Some(opened), trouble) => (opened, trouble),
         (None, trouble) => {
@@ -96,11 +98,11 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         if trouble.is_some() {
             return ExitCode::from(WRONG_FILE);
         }
-        eprintln!("error: {}", no_window(&reason));
+        eprintln!("error: {}", no_window(&reason, &command));
         return ExitCode::from(NO_WINDOW);
     }
     if let Err(reason) = start_threads() {
-        eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})")));
+        eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})"), &command));
         return ExitCode::from(NO_WINDOW);
     }
     let mended = eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
@@ -108,7 +110,7 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
     let setup = Setup { trouble, ..Setup::of_program() };
-    match ending(caught(|| run(opened, models, setup, &opening)), opening.get()) {
+    match ending(caught(|| run(opened, models, setup, &opening)), opening.get(), &command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
             eprintln!("error: {words}");
@@ -117,13 +119,14 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     }
 }
 
-/// Why the window ended, in words, unless it was closed. `kept` is what keeps its decisions, once it has drawn a frame.
-fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result<(), String> {
+/// Why the window ended, in words, unless it was closed. `kept` is what keeps its decisions, once it has drawn a frame; `command` does
+/// without a window.
+fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>, command: &str) -> Result<(), String> {
     match (run, kept) {
         (Ok(Ok(())), _) => Ok(()),
         // A missing system library is a panic inside the window library's start-up, not an error.
-        (Ok(Err(error)), None) => Err(no_window(&error.to_string())),
-        (Err(fault), None) => Err(no_window(&fault.message)),
+        (Ok(Err(error)), None) => Err(no_window(&error.to_string(), command)),
+        (Err(fault), None) => Err(no_window(&fault.message, command)),
         (Ok(Err(error)), Some(autosave)) => Err(end_words(&error.to_string(), &autosave.flush(LAST_WAIT))),
         (Err(fault), Some(autosave)) => Err(end_words(&fault.words(), &autosave.flush(LAST_WAIT))),
     }
@@ -131,10 +134,14 @@ fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>) -> Result
 
 /// What the window opens on, and what is wrong with the file that was asked for: then it opens on the example.
 fn load(path: Option<PathBuf>) -> (Option<Opened>, Option<String>) {
-    let found = path.map_or_else(|| embedded_example().map(Opened::Dataset), |path| load_any(&path));
+    let found =
+        path.map_or_else(|| embedded_example().map(Opened::Dataset), |path| load_any(&path, &ReadingBudget::default()));
     match found {
         Ok(opened) => (Some(opened), None),
-        Err(error) => (embedded_example().map(Opened::Dataset).ok(), Some(error.to_string())),
+        Err(error) => {
+            let words = shortened_message(&sanitized(&error.to_string()));
+            (embedded_example().map(Opened::Dataset).ok(), Some(words))
+        }
     }
 }
 
@@ -205,9 +212,18 @@ fn missing_display() -> Option<String> {
     (!found).then(|| "there is no display (neither WAYLAND_DISPLAY nor DISPLAY is set)".to_owned())
 }
 
-fn no_window(reason: &str) -> String {
+fn no_window(reason: &str, command: &str) -> String {
     let reason = reason.lines().next().unwrap_or(reason).trim_end_matches('.');
-    format!("the window could not be opened: {reason}. Without a window: gdcm analyze [FILE] --out DIR")
+    format!("the window could not be opened: {reason}. Without a window: {command}")
+}
+
+/// The command that does without a window what one would be opened for: on the embedded example where no file is given.
+fn headless(path: Option<&Path>, holds_models: bool) -> String {
+    match path.map(sanitized_path) {
+        Some(path) if holds_models => format!("gdcm assemble \"{path}\" --out dataset.json.gz"),
+        Some(path) => format!("gdcm analyze \"{path}\" --out results"),
+        None => "gdcm analyze --out results".to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -217,8 +233,9 @@ mod tests {
     #[test]
     fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not() {
         let fault = || Err(Fault { message: "no libxkbcommon".to_owned(), place: None });
-        let words = ending(fault(), None).unwrap_err();
+        let words = ending(fault(), None, &headless(Some(Path::new("a.json")), false)).unwrap_err();
         assert!(words.starts_with("the window could not be opened: no libxkbcommon"), "{words}");
+        assert!(words.ends_with("Without a window: gdcm analyze \"a.json\" --out results"), "{words}");
         let folder = tempfile::tempdir().unwrap();
         let autosave = Autosave::start(
             Some(folder.path()),
@@ -226,7 +243,7 @@ mod tests {
             super::super::ReplySender::new(&egui::Context::default()).0,
         )
         .unwrap();
-        let words = ending(fault(), Some(&autosave)).unwrap_err();
+        let words = ending(fault(), Some(&autosave), "").unwrap_err();
         assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
         assert!(words.ends_with("every decision was saved"), "{words}");
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, WantedDataset};
 use crate::view::views::RequirementsPage;
@@ -15,24 +16,16 @@ use gdcm_core::records::{
     with_topics_joined,
 };
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
-use gdcm_files::{
-    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
-};
+use gdcm_files::variables::ReadingBudget;
+use gdcm_files::{DatasetOrigin, FileError, add_dataset, example_records, load_records, read_records, relative_entry};
 
-use super::{DialogPurpose, GdcmApp};
+use super::{DialogPurpose, GdcmApp, Untold};
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]
 struct ReadRecords {
     rows: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     faults: Vec<String>,
-}
-
-/// Reads without telling how far it is.
-struct Untold;
-
-impl FolderProgress for Untold {
-    fn reading(&self, _: usize, _: usize, _: &str) {}
 }
 
 impl GdcmApp {
@@ -104,6 +97,7 @@ impl GdcmApp {
             for rule in channels.inputs.iter_mut().chain(&mut channels.outputs) {
                 if let Some(said) = said.iter().find(|said| said.name == rule.name) {
                     rule.aliases.clone_from(&said.aliases);
+                    rule.unit_in_files.clone_from(&said.unit_in_files);
                 }
             }
         }
@@ -131,11 +125,19 @@ impl GdcmApp {
         let (sources, typed) = (records.sources.clone(), PathBuf::from(records.wanted.path.trim()));
         let path = self.at_home(typed);
         let written = path.clone();
-        let make = move || dataset_of_files(&sources, channels, band, &path);
-        self.in_thread("a dataset of records", make, move |app, made| match made {
-            Some(Ok((dataset, channels))) => app.write_record_dataset(&dataset, channels, written),
-            Some(Err(problems)) => app.state.records.wanted.problems = problems,
-            None => {}
+        let (number, stop) = self.record_reader.join();
+        self.state.records.reading = Some(RecordsReading { name: "records".to_owned() });
+        let make = move || dataset_of_files(&sources, channels, band, &path, &Untold(stop));
+        self.in_thread("a dataset of records", make, move |app, made| {
+            if !app.record_reader.is_newest(number) {
+                return;
+            }
+            app.state.records.reading = None;
+            match made {
+                Some(Ok((dataset, channels))) => app.write_record_dataset(&dataset, channels, written),
+                Some(Err(problems)) => app.state.records.wanted.problems = problems,
+                None => {}
+            }
         });
     }
 
@@ -173,10 +175,12 @@ impl GdcmApp {
         self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
         let name = format!("the records of condition {id}");
         match &self.loaded.origin {
-            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |_, channels| of_example(channels, id)),
+            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |_, channels, _| of_example(channels, id)),
             DatasetOrigin::File(path) if !entries.is_empty() => {
                 let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                self.read_in_thread(name, move |_, channels| Ok(of_entries(channels, id, &entries, &folder)));
+                self.read_in_thread(name, move |_, channels, stop| {
+                    Ok(of_entries((channels, id), &entries, &folder, &stop))
+                });
             }
             DatasetOrigin::File(_) => drop(self.records_of(id)),
         }
@@ -187,22 +191,25 @@ impl GdcmApp {
         self.state.records.sources.extend(paths.iter().cloned());
         let name = paths.first().map_or(String::new(), |path| path.display().to_string());
         let shown = self.state.condition().id();
-        self.read_in_thread(name, move |dataset, channels| of_files((dataset, channels), shown, &paths));
+        self.read_in_thread(name, move |dataset, channels, stop| {
+            of_files((dataset, channels), shown, &paths, &Untold(stop))
+        });
     }
 
     fn read_in_thread(
         &mut self,
         name: String,
-        read: impl FnOnce(&Dataset, &RecordChannels) -> Result<ReadRecords, FileError> + Send + 'static,
+        read: impl FnOnce(&Dataset, &RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError> + Send + 'static,
     ) {
         let channels = self.record_channels(self.state.condition().id());
         let clock_band_end = channels.resampling.band_end;
         let dataset = Arc::clone(self.state.study.file_dataset());
         let of = Arc::clone(&dataset);
         self.state.records.reading = Some(RecordsReading { name });
-        let read = move || read(&dataset, &channels);
+        let (number, stop) = self.record_reader.join();
+        let read = move || read(&dataset, &channels, stop);
         self.in_thread("the reading of records", read, move |app, found| {
-            if !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
+            if !app.record_reader.is_newest(number) || !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
                 return;
             }
             app.state.records.reading = None;
@@ -217,7 +224,7 @@ impl GdcmApp {
     }
 
     /// The records of a condition, none at first.
-    fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
+    pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         let nothing = || ConditionRecords::new(Vec::new(), &self.state.study.dataset);
         self.state.records.conditions.entry(id).or_insert_with(nothing)
     }
@@ -404,19 +411,27 @@ fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
 
 /// The records of a condition of the example that are inside the program.
 fn of_example(channels: &RecordChannels, id: ConditionId) -> Result<ReadRecords, FileError> {
+    let channels = &channels.clone().of_named_records();
     let rows: Vec<LaidOutRecord> = example_records(id.0)?.into_iter().map(|table| row_of(table, channels)).collect();
     Ok(ReadRecords { rows: BTreeMap::from([(id, rows)]), faults: Vec::new() })
 }
 
 /// The records that a dataset names.
-fn of_entries(channels: &RecordChannels, id: ConditionId, entries: &[ConditionRecord], folder: &Path) -> ReadRecords {
+fn of_entries(
+    (channels, id): (&RecordChannels, ConditionId),
+    entries: &[ConditionRecord],
+    folder: &Path,
+    stop: &Arc<AtomicBool>,
+) -> ReadRecords {
+    let channels = &channels.clone().of_named_records();
     let mut found = ReadRecords::default();
     let mut left: Vec<&ConditionRecord> = entries.iter().collect();
     // A file that holds many of them is read once.
     while let Some(file) = left.first().map(|entry| entry.file.as_str()) {
         let of_file: Vec<&ConditionRecord> = left.extract_if(.., |entry| entry.file == file).collect();
         let variables: Vec<Option<&str>> = of_file.iter().map(|entry| entry.variable.as_deref()).collect();
-        let tables = load_records(&folder.join(file), &variables);
+        let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
+        let tables = load_records(&folder.join(file), &variables, &budget);
         found.faults.extend(tables.as_ref().err().map(ToString::to_string));
         for (entry, table) in of_file.into_iter().zip(tables.into_iter().flatten()) {
             match table {
@@ -436,8 +451,9 @@ fn of_files(
     (dataset, channels): (&Dataset, &RecordChannels),
     shown: ConditionId,
     paths: &[PathBuf],
+    progress: &Untold,
 ) -> Result<ReadRecords, FileError> {
-    let read = read_records(paths, &Untold)?;
+    let read = read_records(paths, progress)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
     for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
@@ -457,8 +473,9 @@ fn dataset_of_files(
     mut channels: RecordChannels,
     band: Band,
     path: &Path,
+    progress: &Untold,
 ) -> Result<(Dataset, RecordChannels), Vec<String>> {
-    let read = read_records(sources, &Untold).map_err(|error| vec![error.to_string()])?;
+    let read = read_records(sources, progress).map_err(|error| vec![error.to_string()])?;
     let (mut entries, mut problems) = (Vec::new(), Vec::new());
     for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
         let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::Study;
-use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, lost_studies, open_study};
+use gdcm_files::variables::ReadingBudget;
+use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, load_any, lost_studies};
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
@@ -219,7 +220,7 @@ impl GdcmApp {
     pub(super) fn restore(&mut self, offer: usize) {
         if let Some(Some(lost)) = self.offers.get(offer) {
             let path = lost.path().to_owned();
-            let read = move || Ok(Opened::Study(open_study(&path)?));
+            let read = move |budget: &ReadingBudget<'_>| load_any(&path, budget);
             self.read(ReadFor::Restoring(offer), "decisions that were not saved".to_owned(), read);
         }
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_files::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset};
+use gdcm_files::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset_within};
 
 use super::{GdcmApp, ReadFor, ReplySender};
 use crate::view::Bar;
@@ -36,7 +36,7 @@ impl GdcmApp {
     pub(super) fn reload(&mut self) {
         if let Some(path) = self.loaded.path().map(ToOwned::to_owned) {
             let name = path.display().to_string();
-            self.read(ReadFor::Reloading, name, move || Ok(Opened::Dataset(load_dataset(&path)?)));
+            self.read(ReadFor::Reloading, name, move |budget| load_dataset_within(&path, budget).map(Opened::Dataset));
         }
     }
 

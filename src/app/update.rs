@@ -1,7 +1,7 @@
 //! Carrying out commands: the only code that changes what the window shows.
 
 use egui::ViewportCommand;
-use gdcm_core::message_text::sanitized;
+use gdcm_core::message_text::{sanitized, shortened_message};
 
 use crate::view::plot::{FigureView, Pane};
 use crate::view::views::PairSet;
@@ -137,7 +137,7 @@ impl GdcmApp {
             }
             Command::SetTheme(theme) => self.ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
-            Command::StopComputing => self.stop_jobs(),
+            Command::StopComputing => self.stop_work(),
             Command::Compute => self.compute_again(),
             Command::CopyTable(kind) => {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
@@ -302,12 +302,12 @@ impl GdcmApp {
 
     /// Tells the engineer that something was done.
     pub(super) fn done(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: sanitized(&text) });
+        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: shortened_message(&sanitized(&text)) });
     }
 
     /// Tells the engineer that something could not be done.
     pub(super) fn notify_error(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: sanitized(&text) });
+        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: shortened_message(&sanitized(&text)) });
     }
 }
 

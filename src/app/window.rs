@@ -22,8 +22,8 @@ use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_fi
 
 use super::keyboard::{self, KeyOrder};
 use super::{
-    AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, ModelReader, NextFocus, PendingAction, Proof,
-    Reply, ReplySender, ReportJob, SavedStudy, Setup,
+    AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, NextFocus, PendingAction, Proof, Reader, Reply,
+    ReplySender, ReportJob, SavedStudy, Setup,
 };
 
 /// The program's window.
@@ -44,7 +44,12 @@ pub struct GdcmApp {
     received: Receiver<Reply>,
     /// Whether a dialog of the desktop is open.
     pub(super) dialog_open: bool,
-    pub(super) models: ModelReader,
+    /// Reads the models that are imported.
+    pub(super) models: Reader,
+    /// Reads what is opened.
+    pub(super) opener: Reader,
+    /// Reads flight records.
+    pub(super) record_reader: Reader,
     /// Where the channels of a dataset that was made of records are found in them, by the dataset's path.
     pub(super) said_channels: Option<(PathBuf, RecordChannels)>,
     /// What waits for the answer whether to lose decisions that are not saved.
@@ -106,7 +111,9 @@ impl GdcmApp {
             replies,
             received,
             dialog_open: false,
-            models: ModelReader::default(),
+            models: Reader::default(),
+            opener: Reader::default(),
+            record_reader: Reader::default(),
             said_channels: None,
             postponed: None,
             goes_on_once_saved: false,

@@ -50,5 +50,6 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     drop(progress);
     save_report(&report, &arguments.out, outputs)?;
     let solved = analysis.conditions.values().filter(|outcome| outcome.is_ok()).count();
-    say(&format!("{}: a report on {solved} conditions\n", sanitized_path(&arguments.out)))
+    say(&format!("{}: a report on {solved} conditions\n", sanitized_path(&arguments.out)))?;
+    records.ended()
 }

@@ -477,8 +477,11 @@ impl FromStr for FileSign {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let expected =
-            || format!("expected CHANNEL=-1 or CHANNEL=1, then :identified, :physics, :all or :FILE, found \"{text}\"");
+        let expected = || {
+            format!(
+                "expected a channel with 1 or -1, as NZ=-1, then :identified, :physics, :all or : and the file of a model, found \"{text}\""
+            )
+        };
         let (channel, rest) = text.rsplit_once('=').ok_or_else(expected)?;
         let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
         let sign = match sign.trim() {

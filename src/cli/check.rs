@@ -10,7 +10,8 @@ use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
 use super::{
-    Failure, LABEL, OpeningArguments, SaidSign, by_words, error, indented, labelled, listed_conditions, open, say, turn,
+    Failure, LABEL, OpeningArguments, SaidSign, by_words, doubt_words, error, indented, labelled, listed_conditions,
+    open, say, turn,
 };
 
 /// Says what a dataset or a study holds.
@@ -71,7 +72,7 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     // Signs and units first: what follows may come of them.
     let doubts = doubts_of_models(study, &execution)?;
-    let mut text: String = doubts.iter().map(|doubt| caution_line(&doubt.words(&study.dataset))).collect();
+    let mut text: String = doubts.iter().map(|doubt| caution_line(&doubt_words(doubt, &study.dataset))).collect();
     let pair_name = |pair| study.dataset.pair_name(pair);
     let cautions = cautions_of_models(study, &execution)?;
     for (conditions, words) in by_words(cautions.into_iter().map(|(id, caution)| (id, caution.words(pair_name)))) {

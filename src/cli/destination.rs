@@ -7,6 +7,7 @@ use std::sync::Arc;
 use gdcm_core::dataset::{ConditionId, Dataset, DatasetHeader};
 use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
 
 use super::{Failure, IdentifyArguments, caution, condition_of, ids, listed_conditions, note};
@@ -27,7 +28,7 @@ impl Destination {
     /// The dataset that the command line names, if any.
     pub(super) fn asked(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.into.as_deref() else { return Ok(None) };
-        let dataset = match load_any(path)? {
+        let dataset = match load_any(path, &ReadingBudget::default())? {
             Opened::Dataset(loaded) => loaded.dataset,
             Opened::Study(_) => {
                 let reason = "expected a dataset, found a study; give the study's dataset".to_owned();

@@ -36,13 +36,13 @@ pub(super) enum Failure {
     #[error("no dataset was made: {count} {} to complete; do so in {rules} and give it with --rules", if *count == 1 { "item" } else { "items" })]
     Incomplete { count: usize, rules: String },
     /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
-    #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time), or leave them out", if *of == 1 { "record" } else { "records" })]
+    #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time) and in which unit (--unit P=deg/s), or leave them out", if *of == 1 { "record" } else { "records" })]
     Records { wrong: usize, of: usize },
     /// Files of which nothing could be taken.
     #[error("{paths}: no {what} that could be taken")]
     Nothing { paths: String, what: &'static str },
-    /// Records that were asked for by name could not be read; the others were.
-    #[error("{paths}: could not be read; what was identified is without it")]
+    /// Records that were asked for by name could not be read, or not all that is in them; what could was used.
+    #[error("{paths}: not read, or not all of it; what was made is without that")]
     Unread { paths: String },
     /// What was asked for was identified, and nothing of it is of use.
     #[error("no input is identified in these records: the models say nothing of {inputs}")]

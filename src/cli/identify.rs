@@ -18,9 +18,9 @@ use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
 use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory, relative_entry};
 
 use super::{
-    ChannelConversion, ChannelDelay, ChannelTopic, Destination, Failure, Group, IdentifyArguments, ReadRecords,
-    TerminalProgress, by_words, caution, caution_of, counted, existing, hold_out, is_called, laid_out, listed_paths,
-    note, of_one_record, record_table, said_conditions, say,
+    ChannelDelay, ChannelTopic, Destination, Failure, Group, IdentifyArguments, ReadRecords, TerminalProgress,
+    by_words, caution, caution_of, counted, existing, hold_out, is_called, laid_out, listed_paths, note, of_one_record,
+    record_table, said_conditions, say, say_conversions,
 };
 
 /// The file of what was found.
@@ -214,7 +214,8 @@ fn tasks(
     channels: &mut RecordChannels,
     band: Band,
 ) -> Result<Tasks, Failure> {
-    let ReadRecords { mut records, unread, reading, copies } = laid_out(arguments, channels)?;
+    let ReadRecords { mut records, unread, reading, copies } =
+        laid_out(arguments, channels, destination.map(|of| of.dataset.as_ref()))?;
     hold_out(&arguments.hold_out, &mut records)?;
     put_right(arguments, &mut records, channels)?;
     let mut preparation = preparation(channels, &arguments.delay)?;
@@ -269,7 +270,11 @@ fn channels(
     }
     let unknown =
         |option, channel: &String| Failure::Option { option, reason: format!("{channel} is none of the channels") };
-    for ChannelTopic { channel, column } in &arguments.topic {
+    for (at, ChannelTopic { channel, column }) in arguments.topic.iter().enumerate() {
+        if arguments.topic[..at].iter().any(|before| before.channel == *channel) {
+            let reason = format!("{channel} stands twice; a channel is found in one place");
+            return Err(Failure::Option { option: "--topic", reason });
+        }
         let rule = channels.inputs.iter_mut().chain(&mut channels.outputs).find(|rule| rule.name == *channel);
         rule.ok_or_else(|| unknown("--topic", channel))?.aliases = vec![column.clone()];
     }
@@ -281,17 +286,9 @@ fn channels(
         rate_hz: arguments.resample,
         held: arguments.held.iter().cloned().collect(),
     };
-    let units = arguments.unit.iter().map(|said| ("--unit", said.clone()));
+    say_conversions("--unit", &arguments.unit, &mut channels)?;
     let factors = arguments.factor.iter().filter(|of| of_one_record(&of.channel).is_none());
-    for (option, ChannelConversion { channel, said }) in units.chain(factors.map(|of| ("--factor", of.clone()))) {
-        let refused = |reason: String| Err(Failure::Option { option, reason });
-        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
-            return refused(format!("{channel} is none of the channels"));
-        }
-        if channels.said.insert(channel.clone(), said).is_some() {
-            return refused(format!("{channel} has a unit or a factor already"));
-        }
-    }
+    say_conversions("--factor", factors, &mut channels)?;
     Ok(channels)
 }
 
@@ -322,6 +319,7 @@ fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destinatio
                 return Err(Failure::Option { option, reason });
             }
             rule.aliases = column.iter().cloned().collect();
+            rule.unit_in_files = Some(unit.clone()).filter(|unit| !unit.is_empty());
         }
     }
     Ok(channels)
@@ -370,6 +368,7 @@ fn put_right(
         }
         SaidConversion::Unit(_) => None,
     });
+    let mut done: Vec<(&str, String, &str)> = Vec::new();
     for (option, said, remedy) in delays.chain(factors) {
         let Some((record, channel)) = of_one_record(said) else { continue };
         if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
@@ -380,6 +379,11 @@ fn put_right(
             return Err(Failure::Option { option, reason: format!("\"{record}\" is none of the records") });
         }
         for of in of_it {
+            let of_channel = (option, of.table.name.clone(), channel);
+            if done.contains(&of_channel) {
+                return Err(Failure::Option { option, reason: format!("{channel} of {record} stands twice") });
+            }
+            done.push(of_channel);
             let mut layout = of.layout.clone();
             layout.put_right(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
             *of = of.laid_out(layout, channels);

@@ -6,10 +6,10 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 
 use gdcm_core::identification::SearchSpace;
-use gdcm_core::records::{ChannelList, SaidChannel, SaidConversion};
+use gdcm_core::records::{ChannelList, RecordChannels, SaidChannel, SaidConversion};
 use gdcm_core::study::OfferedModels;
 
-use super::{real_number, whole_number};
+use super::{Failure, real_number, whole_number};
 
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
@@ -143,7 +143,26 @@ pub struct ChannelConversion {
     pub said: SaidConversion,
 }
 
-fn said_unit(text: &str) -> Result<ChannelConversion, String> {
+/// Takes what an option says of the samples of channels, once of each.
+pub(super) fn say_conversions<'c>(
+    option: &'static str,
+    said: impl IntoIterator<Item = &'c ChannelConversion>,
+    channels: &mut RecordChannels,
+) -> Result<(), Failure> {
+    for ChannelConversion { channel, said } in said {
+        let refused = |reason: String| Err(Failure::Option { option, reason });
+        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *channel) {
+            return refused(format!("{channel} is none of the channels"));
+        }
+        if channels.said.insert(channel.clone(), said.clone()).is_some() {
+            return refused(format!("{channel} has a unit or a factor already"));
+        }
+    }
+    Ok(())
+}
+
+/// A channel with the unit of its samples: "P=rad/s".
+pub(super) fn said_unit(text: &str) -> Result<ChannelConversion, String> {
     match text.split_once('=').map(|(channel, unit)| (channel.trim(), unit.trim())) {
         Some((channel, unit)) if !channel.is_empty() && !unit.is_empty() => {
             Ok(ChannelConversion { channel: channel.to_owned(), said: SaidConversion::Unit(unit.to_owned()) })

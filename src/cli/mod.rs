@@ -30,17 +30,18 @@ use clap::error::{ContextKind, ContextValue};
 
 use gdcm_core::message_text::sanitized_path;
 use gdcm_core::study::{Kind, SETTINGS};
+use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
 
 use crate::executor::start_threads;
 use arguments::{Arguments, real_number, whole_number};
 use destination::{Destination, Group, said_conditions};
 use failure::{Failure, listed_paths};
-use history_records::time_histories;
+use history_records::{entry_of_dataset, time_histories};
 use models::{ReadingProgress, counted};
-use read_record::{ReadRecords, hold_out, is_called, laid_out, record_table};
+use read_record::{ReadRecords, found_records, hold_out, is_called, laid_out, record_table};
 use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
-use summary::{LABEL, leave_one_out_section};
+use summary::{LABEL, doubt_words, leave_one_out_section};
 use terminal::{Manner, TerminalProgress, caution, caution_of, error, keep_caution, note, progress_target, say};
 use text_table::{by_words, indented, labelled, listed, listed_conditions};
 
@@ -53,6 +54,7 @@ pub use history_records::HistoryArguments;
 pub use identify_arguments::{
     ChannelConversion, ChannelDelay, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart, of_one_record,
 };
+use identify_arguments::{said_unit, say_conversions};
 
 /// What the command line asks for.
 #[derive(Debug)]
@@ -126,8 +128,8 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
         return Err(Failure::Models { path: sanitized_path(file) });
     }
     let opened = match &arguments.dataset {
-        Some(dataset) => Opened::Study(open_study_of(file, dataset)?),
-        None => load_any(file)?,
+        Some(dataset) => Opened::Study(open_study_of(file, dataset, &ReadingBudget::default())?),
+        None => load_any(file, &ReadingBudget::default())?,
     };
     if let Opened::Study(study) = &opened {
         for difference in &study.differences {

@@ -70,6 +70,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
 
 /// Makes a dataset of the models in a folder.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
+    check_signs(&arguments.sign)?;
     let rules_path = arguments.rules.clone().unwrap_or_else(|| rules_path(&arguments.out));
     let is_proposed = arguments.rules.is_none();
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.rules.iter().cloned().collect());
@@ -125,6 +126,19 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
             problems.iter().for_each(|(_, words)| error(words));
             Err(Failure::Incomplete { count: problems.len(), rules: sanitized_path(&rules_path) })
         }
+    }
+}
+
+/// Refuses what is said twice of the sign of one channel of the same models.
+fn check_signs(signs: &[FileSign]) -> Result<(), Failure> {
+    let is_again =
+        |at: &usize| signs[..*at].iter().any(|of| of.channel == signs[*at].channel && of.of == signs[*at].of);
+    match (0..signs.len()).find(is_again) {
+        Some(again) => {
+            let FileSign { channel, of, .. } = &signs[again];
+            Err(Failure::Option { option: "--sign", reason: format!("{channel} of {of} stands twice") })
+        }
+        None => Ok(()),
     }
 }
 

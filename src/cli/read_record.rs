@@ -2,7 +2,9 @@
 
 use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use gdcm_core::dataset::Dataset;
 use gdcm_core::identification::CautionNote;
 use gdcm_core::records::{
     LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step,
@@ -12,13 +14,15 @@ use gdcm_core::study::Table;
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records};
 
-use super::{Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, error, indented, note};
+use super::{
+    Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, entry_of_dataset, error, indented, note,
+};
 
 /// The records that were read.
 pub(super) struct ReadRecords {
     /// Every record with its columns.
     pub(super) records: Vec<LaidOutRecord>,
-    /// The files named of which none came.
+    /// The files named that could not be read, or not all that is in them.
     pub(super) unread: Vec<PathBuf>,
     /// What was chosen and done while they were read.
     pub(super) reading: Vec<String>,
@@ -27,15 +31,19 @@ pub(super) struct ReadRecords {
 }
 
 /// Reads the records; what was chosen, and what is wrong, is told on standard error.
-pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChannels) -> Result<ReadRecords, Failure> {
+pub(super) fn laid_out(
+    arguments: &IdentifyArguments,
+    channels: &mut RecordChannels,
+    dataset: Option<&Dataset>,
+) -> Result<ReadRecords, Failure> {
     let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
-    let tables = tables(arguments)?;
-    let unread = unread(&arguments.records, &tables);
-    let mut reading = Vec::new();
+    let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
+    let (mut reading, mut wrong): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let tables = with_topics_joined(tables, channels, &wish);
     for table in parts(tables, &arguments.part)? {
-        let (record, notes) = LaidOutRecord::proposed(table, channels, &wish);
+        let own = channels_of(&table, channels, dataset);
+        let (record, notes) = LaidOutRecord::proposed(table, &own, &wish);
         // A part is of those records that have samples then.
         if record.table.part_s.is_some() && record.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
             note(&format!("{}: no samples then", record.table.name));
@@ -53,7 +61,12 @@ pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChann
             told = notes;
         }
         record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
-        record.problems.iter().for_each(|words| error(&format!("{name}: {words}")));
+        // What is wrong with all of them is told of the first.
+        let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
+        if problems != wrong {
+            problems.iter().for_each(|words| error(&format!("{name}: {words}")));
+            wrong = problems;
+        }
         channels.take_units(&record.layout, &record.table);
         records.push(record);
     }
@@ -63,11 +76,17 @@ pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChann
         let reason = format!("no record has samples from {from} to {to} s on its own clock");
         return Err(Failure::Option { option: "--part", reason });
     }
-    // By the units that the channels have by now.
-    for record in records.iter_mut().filter(|record| record.problems.is_empty()) {
-        *record = LaidOutRecord::new(record.table.clone(), record.layout.clone(), record.guess.clone(), channels);
+    // By the units that the channels have by now: a record before the first that says them may say none.
+    let by_units = |record: LaidOutRecord| {
+        if !record.problems.is_empty() {
+            return record;
+        }
+        let own = channels_of(&record.table, channels, dataset);
+        let (record, _) = LaidOutRecord::proposed(Arc::unwrap_or_clone(record.table), &own, &wish);
         record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
-    }
+        record
+    };
+    let mut records: Vec<LaidOutRecord> = records.into_iter().map(by_units).collect();
     leave_out_copies(&mut records);
     let mut copies = Vec::new();
     for copy in records.iter().filter(|record| !record.used) {
@@ -88,11 +107,12 @@ pub(super) fn laid_out(arguments: &IdentifyArguments, channels: &mut RecordChann
     }
 }
 
-/// The files named on the command line of which no record came.
-fn unread(named: &[PathBuf], tables: &[RecordTable]) -> Vec<PathBuf> {
-    let came =
-        |path: &&PathBuf| tables.iter().any(|table| Path::new(&table.source.file).file_name() == path.file_name());
-    named.iter().filter(|path| !path.is_dir() && !came(path)).cloned().collect()
+/// The channels that a record is to give. One that the dataset itself names is in its units where its file says none, unless it stands
+/// there with a factor, which may be that of another unit.
+fn channels_of(table: &RecordTable, channels: &RecordChannels, dataset: Option<&Dataset>) -> RecordChannels {
+    let entry = dataset.and_then(|dataset| entry_of_dataset(dataset, table));
+    let is_plain = entry.is_some_and(|(_, entry)| entry.remedies.values().all(|remedy| remedy.factor == 1.0));
+    if is_plain { channels.clone().of_named_records() } else { channels.clone() }
 }
 
 /// The parts asked for, in place of the records that they are of.
@@ -117,11 +137,12 @@ pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     source.file.rsplit('/').next() == Some(&file) || table.name == *wanted || source.variable.as_deref() == Some(wanted)
 }
 
-fn tables(arguments: &IdentifyArguments) -> Result<Vec<RecordTable>, Failure> {
-    let FoundRecords { tables, faults, ignored, .. } = read_records(&arguments.records, &ReadingProgress::new())?;
-    faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
-    ignored.iter().for_each(|words| note(&format!("no record: {words}")));
-    if tables.is_empty() { Err(Failure::nothing_in(&arguments.records, "record")) } else { Ok(tables) }
+/// The records of files and folders; what could not be taken is told on standard error.
+pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> {
+    let found = read_records(paths, &ReadingProgress::new())?;
+    found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
+    found.ignored.iter().for_each(|words| note(&format!("no record: {words}")));
+    if found.tables.is_empty() { Err(Failure::nothing_in(paths, "record")) } else { Ok(found) }
 }
 
 /// Holds out the records asked for; without a word those whose names say so stay held out.

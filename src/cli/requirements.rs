@@ -46,7 +46,8 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         + &history_section(&histories)
         + &labelled(0, "", LABEL, "these numbers are no qualification")
         + &labelled(0, "Written", LABEL, &files);
-    say(&(text + &written))
+    say(&(text + &written))?;
+    records.ended()
 }
 
 /// Adds the table of tolerances to what is written, and gives the line that says so.

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use gdcm_core::correction::{ChannelCorrection, GainSource, Outcome};
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Pair};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::schedule::{Schedule, ScheduledQuantity};
 use gdcm_core::study::{
-    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, PhaseCorrection,
-    Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
+    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, ConventionDoubt,
+    PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
 };
 use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms};
@@ -23,7 +23,7 @@ pub(super) const LABEL: usize = 14;
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let mut text = heading(analysis, loaded);
     for doubt in &analysis.doubts {
-        let words = doubt.words(&analysis.study.dataset);
+        let words = doubt_words(doubt, &analysis.study.dataset);
         keep_caution(&doubt.conditions, &words);
         text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
     }
@@ -40,6 +40,13 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
     text.push_str(&evidence_section(analysis));
     text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out))));
     text
+}
+
+/// A doubt of a channel's sign or unit, with the option that turns the sign.
+pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
+    let (inputs, outputs) = dataset.names_of_channels();
+    let option = doubt.turns().map(|channel| format!(" (--sign {}=-1)", channel.name(&inputs, &outputs)));
+    doubt.words(dataset) + &option.unwrap_or_default()
 }
 
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
@@ -231,7 +238,14 @@ fn cautions_section(analysis: &Analysis) -> String {
         let (id, said) = (result.condition.id(), remarks(&analysis.study, result, None));
         // What is said of signs and units stands above all conditions.
         let cautions = said.into_iter().skip(result.doubts.len()).filter(|of| of.kind == RemarkKind::Caution);
-        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.partition(|of| of.repeated.is_some());
+        let cautions: Vec<Remark> = cautions.collect();
+        let needs_lead = cautions.iter().any(|of| matches!(of.repeated, Some(Repeated::NeedsLead(_))));
+        // What is common to all is said beside what each needs.
+        let is_repeated = |of: &Remark| match of.repeated {
+            Some(Repeated::CommonLead(_)) => needs_lead,
+            _ => of.repeated.is_some(),
+        };
+        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.into_iter().partition(is_repeated);
         if !repeated.is_empty() {
             rows.push((id, repeated.into_iter().filter_map(|of| of.repeated).collect()));
         }
@@ -263,10 +277,18 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) ->
     if all().any(|of| matches!(of, Repeated::Farther(_))) {
         sentence += "; * is farther from flight (larger J) than without a correction";
     }
+    let common = |of: &Repeated| if let Repeated::CommonLead(lead_ms) = of { Some(lead_ms.clone()) } else { None };
+    let has_common = all().any(|of| common(of).is_some());
+    if has_common {
+        sentence += "; where all want about the same (column all), check first the time alignment of the records, the simulation's \
+                     integration and sampling delay, then servo and sensor models: a common lag is better taken out where it arises \
+                     than corrected";
+    }
     if has_offers {
         sentence += "; the last column is the mean J of the held responses, and what it would be with a delay or lead in each channel";
     }
     let headings = std::iter::once("condition".to_owned()).chain(pairs.iter().map(|pair| dataset.pair_name(*pair)));
+    let headings = headings.chain(has_common.then(|| "all".to_owned()));
     let mut table = Table::new("", headings.chain(has_offers.then(|| "J with leads".to_owned())));
     for (id, row) in rows {
         let cell = |pair: &Pair| {
@@ -277,7 +299,8 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) ->
             Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
             _ => None,
         });
-        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(cell)).chain(offer));
+        let all = has_common.then(|| row.iter().find_map(common).unwrap_or_else(|| "-".to_owned()));
+        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(cell)).chain(all).chain(offer));
     }
     let conditions: Vec<ConditionId> = rows.iter().map(|(id, _)| *id).collect();
     keep_caution(&conditions, &sentence);

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::message_text::{sanitized, shortened_words};
+use gdcm_core::message_text::{sanitized, shortened_message};
 use gdcm_core::study::Progress;
 use gdcm_files::system_words;
 
@@ -80,7 +80,7 @@ pub(super) fn say(text: &str) -> Result<(), Failure> {
 
 fn plain(words: &str, line: &str) -> String {
     let end = if line.ends_with('\n') { "\n" } else { "" };
-    format!("{}{end}", shortened_words(&sanitized(words)))
+    format!("{}{end}", shortened_message(&sanitized(words)))
 }
 
 fn print(text: &str) -> Result<(), Failure> {

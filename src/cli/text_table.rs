@@ -1,7 +1,7 @@
 //! Tables and words behind labels, as a terminal shows them.
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::message_text::shortened;
+use gdcm_core::message_text::{shortened, shortened_message};
 use gdcm_core::study::Table;
 
 /// A table as lines, each behind so many spaces; long names are cut.
@@ -16,14 +16,15 @@ pub(super) const PAGE: usize = 110;
 
 /// Words behind a label, broken between words into lines of at most [`PAGE`] columns that stand under one another.
 pub(super) fn labelled(indent: usize, label: &str, width: usize, words: &str) -> String {
-    hanging(indent, label, width, words.split(' '))
+    hanging(indent, label, width, shortened_message(words).split(' '))
 }
 
 /// A list behind a label, with commas, broken between its entries.
 pub(super) fn listed(indent: usize, label: &str, width: usize, entries: &[String]) -> String {
     let last = entries.len().saturating_sub(1);
     let with_comma = |(index, entry): (usize, &String)| {
-        if index < last { format!("{entry},") } else { entry.clone() }
+        let entry = shortened_message(entry);
+        if index < last { format!("{entry},") } else { entry }
     };
     let entries: Vec<String> = entries.iter().enumerate().map(with_comma).collect();
     hanging(indent, label, width, entries.iter().map(String::as_str))

@@ -302,16 +302,18 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     }
     let is_stopped = state.results.background.stopped;
     let is_told = state.results.is_background_told(now);
-    let beside = match is_stopped {
-        true => Some("the rest was stopped".to_owned()),
-        false => is_told.then(|| background_words(&state.results.background, &state.records)),
+    let beside = match (&state.records.reading, is_stopped) {
+        (Some(reading), _) => Some(format!("reading {} …", reading.name)),
+        (None, true) => Some("the rest was stopped".to_owned()),
+        (None, false) => is_told.then(|| background_words(&state.results.background, &state.records)),
     };
     if let Some(words) = &beside {
         ui.label(palette.small(words));
     }
-    if state.results.stopped || is_stopped {
+    let is_reading = state.opening.is_some() || state.records.reading.is_some();
+    if !is_reading && (state.results.stopped || is_stopped) {
         button_ui(ui, Button::new("Compute").small(), "", Command::Compute, commands);
-    } else if state.results.is_stale(now) || beside.is_some() {
+    } else if is_reading || state.results.is_stale(now) || beside.is_some() {
         button_ui(ui, Button::new("Stop").small(), "", Command::StopComputing, commands);
     }
     let count = |condition: &Condition| BundleKind::BOTH.map(|kind| condition.bundle(kind).len()).iter().sum::<usize>();

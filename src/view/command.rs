@@ -145,7 +145,7 @@ pub enum Command {
     SaveAndGoOn,
     /// Go on with what loses decisions that are not saved.
     DiscardAndGoOn,
-    /// Give up the computation under way.
+    /// Give up the reading under way, or else the computation.
     StopComputing,
     /// Compute what was given up.
     Compute,

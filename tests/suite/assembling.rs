@@ -90,11 +90,14 @@ fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) 
 }
 
 fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
-    let names = ["A", "B", "C", "D"]
-        .into_iter()
-        .zip(matrices(model))
-        .map(|(name, matrix)| (name.to_owned(), vec![array(matrix)]));
-    let lists = labels(dataset).into_iter().map(|(name, list)| (name.to_owned(), vec![cell(&list)]));
+    write_sys(path, matrices(model), labels(dataset));
+}
+
+/// A system in a struct of MATLAB, with names and units.
+fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, Vec<String>); 4]) {
+    let names =
+        ["A", "B", "C", "D"].into_iter().zip(matrices).map(|(name, matrix)| (name.to_owned(), vec![array(matrix)]));
+    let lists = labels.into_iter().map(|(name, list)| (name.to_owned(), vec![cell(&list)]));
     let sys = Value::Struct(StructArray { shape: vec![1, 1], fields: names.chain(lists).collect() });
     let bytes = write_mat(&[Variable { name: "sys".into(), value: sys }]).unwrap();
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
@@ -104,6 +107,33 @@ fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
 pub(crate) fn example_folder(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     write_folders(root, example, |path, model| write_as_mat(example, path, model));
+}
+
+/// Per cent of the travel of the longitudinal stick in an inch of it.
+pub(crate) const PERCENT_IN_AN_INCH: f64 = 12.5;
+
+/// Conditions 1 and 3 of the example as files of two programs: in the identified models NZ is positive the other way round, and the
+/// longitudinal stick is in inches, under a name of its own.
+pub(crate) fn foreign_tree(root: &Path) {
+    let example = &crate::EXAMPLE.dataset;
+    let of_tree = |condition: &&Arc<Condition>| [1, 3].contains(&condition.id().0);
+    let conditions = example.conditions().iter().filter(of_tree).map(|condition| condition.as_ref().clone()).collect();
+    let two = Dataset::new(example.header(), conditions).unwrap();
+    write_folders(root, &two, |path, model| {
+        let mut of = matrices(model).map(DMatrix::clone);
+        let mut labels = labels(example);
+        if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("flight_")) {
+            let nz = example.outputs().len() - 1;
+            of[1].column_mut(0).scale_mut(PERCENT_IN_AN_INCH);
+            of[3].column_mut(0).scale_mut(PERCENT_IN_AN_INCH);
+            of[2].row_mut(nz).scale_mut(-1.0);
+            of[3].row_mut(nz).scale_mut(-1.0);
+            for (name, first) in [("InputName", "xb"), ("InputUnit", "in")] {
+                labels.iter_mut().filter(|label| label.0 == name).for_each(|label| label.1[0] = first.to_owned());
+            }
+        }
+        write_sys(path, of.each_ref(), labels);
+    });
 }
 
 fn write_as_npz(dataset: &Dataset, path: &Path, model: &Model) {

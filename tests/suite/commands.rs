@@ -492,7 +492,7 @@ fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_h
     assert!(strict.status == 2 && strict.error.contains("--strict asks for none"), "{strict:?}");
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
     desk.gdcm(&["check", "a.gdcm-study.json"])
-        .assert_failed(2, &["small.json: there is no such file", "--dataset FILE"]);
+        .assert_failed(2, &["small.json: there is no such file", "with --dataset and its path"]);
     assert_eq!(desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"]).status, 0);
 }
 

@@ -24,7 +24,7 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
         records_of_bytes(&archive(), "example-records.zip", &gdcm_files::variables::ReadingBudget::new(1 << 30))
             .unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));
-    let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset);
+    let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset).of_named_records();
     let patterns = standard_patterns();
     let mut sweeps = [0; 12];
     for table in &found.tables {
@@ -43,6 +43,10 @@ fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() 
     }
 }
 
+/// The units of the records of the late dataset, which their files do not say.
+pub(crate) const LATE_UNITS: [&str; 8] =
+    ["--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s"];
+
 /// A desk with two short records of the small dataset's channels, the first in other units and under other names.
 fn desk() -> Desk {
     let desk = Desk::new();
@@ -55,7 +59,7 @@ fn desk() -> Desk {
         head.to_owned() + &(0..80).map(row).collect::<String>()
     };
     fs::write(desk.path("sweep_1.csv"), text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2)).unwrap();
-    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P,Q\n", 0.3)).unwrap();
+    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P [rad/s],Q [rad/s]\n", 0.3)).unwrap();
     desk
 }
 
@@ -79,12 +83,77 @@ fn records_are_laid_out_in_words_and_held_out_by_name() {
     for words in [
         "sweep_1: time from column \"t\", in s",
         "sweep_1: P: column \"roll rate\" as it is, in rad/s",
-        "validation: P: column \"P\", taken to be in rad/s",
+        "sweep_1: LON: column \"lon\" as it is",
     ] {
         assert!(ended.error.contains(words), "{words}: {ended:?}");
     }
     let line = ended.out.lines().find(|line| line.starts_with("validation")).unwrap();
     assert!(line.contains("80") && line.ends_with("held out"), "{line}");
+}
+
+#[test]
+fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_chosen() {
+    let desk = desk();
+    let bare = fs::read_to_string(desk.path("validation.csv")).unwrap().replace(" [rad/s]", "");
+    fs::write(desk.path("bare.csv"), bare).unwrap();
+    let identify = |records: &[&str], more: &[&str]| {
+        let of = ["--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out", "--quiet"];
+        desk.gdcm(&[&["identify"], records, &of[..], more].concat())
+    };
+    // Whichever comes first: rad/s of one file say nothing of the other.
+    for records in [["sweep_1.csv", "bare.csv"], ["bare.csv", "sweep_1.csv"]] {
+        let ended = identify(&records, &[]);
+        assert_eq!(ended.status, 2, "{ended:?}");
+        for words in [
+            "error: bare: the file does not say the unit of P (column \"P\"), and its samples can be in rad/s or deg/s; say which: \
+             --unit \"P=rad/s\"",
+            "error: bare: the file does not say the unit of Q",
+            "error: 1 of 2 records cannot be taken as they are",
+        ] {
+            assert!(ended.error.contains(words), "{words}: {}", ended.error);
+        }
+        assert!(!desk.path("out").exists());
+    }
+    let said = identify(&["sweep_1.csv", "bare.csv"], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]);
+    assert!(!said.error.contains("does not say the unit"), "{said:?}");
+    // Into a dataset of deg/s; the sticks, from 40 to 60, can be nothing but per cent.
+    let into = ["identify", "bare.csv", "--into", "small.json", "--condition", "7", "--out", "out"];
+    let ended = desk.gdcm(&into);
+    assert_eq!(ended.status, 2, "{ended:?}");
+    assert!(ended.error.contains("its samples can be in deg/s or rad/s"), "{}", ended.error);
+    assert!(
+        ended.error.contains("note: bare: LON: column \"LON\", taken to be in %: the file does not say"),
+        "{ended:?}"
+    );
+    let outputs = ["--outputs", "P [deg/s],Q [deg/s]"];
+    let ended = desk.gdcm(&[&into[..], &outputs[..]].concat());
+    assert!(ended.error.contains("P: column \"P\", in deg/s as is said of the channel"), "{ended:?}");
+    // The records that models are compared with are asked in the same way.
+    fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
+    let report = ["report", "small.json", "--records", "cond7_bare.csv", "--out", "r.html", "--force"];
+    let ended = desk.gdcm(&report);
+    assert!(
+        ended.status == 1 && ended.error.contains("caution: cond7_bare: left out: the file does not say"),
+        "{ended:?}"
+    );
+    let ended = desk.gdcm(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat());
+    assert!(ended.status == 0 && !ended.error.contains("left out"), "{ended:?}");
+}
+
+#[test]
+fn what_is_said_twice_of_one_channel_is_refused() {
+    let desk = desk();
+    let refused = |more: &[&str], words: &str| {
+        let of = ["--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
+        let ended = desk.gdcm(&[&["identify", "sweep_1.csv"], &of[..], more].concat());
+        assert!(ended.status == 2 && ended.error.contains(words), "{words}: {ended:?}");
+    };
+    refused(&["--topic", "P=roll rate", "--topic", "P=pitch rate"], "--topic: P stands twice");
+    refused(&["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"], "--delay: P of sweep_1.csv stands twice");
+    refused(&["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"], "--factor: P of sweep_1 stands twice");
+    refused(&["--unit", "P=rad/s", "--unit", "P=deg/s"], "--unit: P has a unit or a factor already");
+    let ended = desk.gdcm(&["assemble", ".", "--sign", "NZ=-1", "--sign", "NZ=1", "--out", "made.json"]);
+    ended.assert_failed(2, &["--sign: NZ of identified stands twice"]);
 }
 
 #[test]
@@ -172,7 +241,10 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     let into = root.join("tests/data/reference/example-dataset.json.gz");
     let (records, into) = (records.to_str().unwrap(), into.to_str().unwrap());
     let of_every = ["--every-condition", "--take", "with-plain", "--description", "anew", "--out", "out"];
-    let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..]].concat());
+    // The dataset does not name these records, and they do not say their units.
+    let units =
+        ["P=deg/s", "Q=deg/s", "R=deg/s", "NX=m/s2", "NY=m/s2", "NZ=m/s2"].map(|said| ["--unit", said]).concat();
+    let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..], &units].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
         ended
@@ -238,7 +310,7 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
     let identified = |more: &[&str], out: &str| {
         let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
         let into = ["--into", "late.json", "--condition", "7", "--out", out];
-        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
+        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         ended.error
     };
@@ -275,7 +347,7 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
         // Above that no input moves any output enough.
         let into = ["--into", "late.json", "--condition", "7", "--band", "0.5", "9", "--out", out];
-        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
+        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         ended.error
     };
@@ -308,6 +380,14 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "no",
         "--delay",
         "x:Q=0.1",
+        "--unit",
+        "P=deg/s",
+        "--unit",
+        "Q=deg/s",
+        "--unit",
+        "LON=%",
+        "--unit",
+        "LAT=%",
     ]);
     assert!(ended.error.contains("\"x\" is none of the records"), "{ended:?}");
 }

@@ -107,7 +107,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
     assert!(!REPORT.contains("Share of time"), "no record was given");
 
-    let channels = RecordChannels::of_dataset(&EXAMPLE.dataset);
+    let channels = RecordChannels::of_dataset(&EXAMPLE.dataset).of_named_records();
     let tables = example_records(3).unwrap().into_iter().take(1);
     let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();

@@ -5,6 +5,7 @@ use std::fs;
 use serde_json::{Value, json};
 
 use crate::commands::Desk;
+use crate::records::LATE_UNITS;
 use crate::window::records::late_dataset;
 
 /// A desk with a dataset that leaves condition 10 without a result.
@@ -194,12 +195,172 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     fs::write(desk.path("broken.npz"), b"PK\x03\x04 no archive").unwrap();
     let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv", "broken.npz"];
     let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
-    let ended = desk.gdcm(&[&["identify"], &files[..], &into[..]].concat());
+    let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
     assert_eq!(ended.status, 1, "{ended:?}");
     assert!(ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "), "{ended:?}");
     assert!(desk.path("out/identified.json").exists());
     let nothing = desk.gdcm(&["convert", "broken.npz", "--out", "models.json"]);
     assert!(nothing.status != 0 && !nothing.error.contains("FILE"), "{nothing:?}");
+}
+
+/// An archive of files that are not packed (APPNOTE 4.3).
+fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
+    let sum = |bytes: &[u8]| {
+        let mut sum = flate2::Crc::new();
+        sum.update(bytes);
+        sum.sum()
+    };
+    let (mut archive, mut directory) = (Vec::new(), Vec::new());
+    for (name, bytes) in files {
+        let length = bytes.len() as u32;
+        let numbers = [sum(bytes), length, length].map(u32::to_le_bytes).concat();
+        let fields = [&[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &numbers, &[name.len() as u8, 0, 0, 0]].concat();
+        let begin = (archive.len() as u32).to_le_bytes();
+        directory.extend([b"PK\x01\x02\x14\x00", fields.as_slice(), &[0; 10], &begin, name.as_bytes()].concat());
+        archive.extend([b"PK\x03\x04", fields.as_slice(), name.as_bytes(), bytes].concat());
+    }
+    let (count, begin) = (files.len() as u8, (archive.len() as u32).to_le_bytes());
+    let length = (directory.len() as u32).to_le_bytes();
+    archive.extend(directory);
+    archive.extend([b"PK\x05\x06", &[0; 4][..], &[count, 0, count, 0], &length, &begin, &[0, 0]].concat());
+    archive
+}
+
+#[test]
+fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive() {
+    let desk = Desk::new();
+    write_record(&desk);
+    for folder in ["one", "two"] {
+        fs::create_dir(desk.path(folder)).unwrap();
+    }
+    fs::copy(desk.path("a.csv"), desk.path("two/cond7_a.csv")).unwrap();
+    fs::write(desk.path("one/cond7_a.csv"), "no table at all").unwrap();
+    let of_records = |records: [&str; 2]| {
+        let records = ["--records", records[0], "--records", records[1]];
+        let units = ["--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s"];
+        let report = ["report", "small.json", "--out", "r.html", "--force"];
+        let requirements = ["requirements", "small.json", "--out", "q", "--force"];
+        [report.as_slice(), &requirements].map(|of| desk.gdcm(&[of, &records, &units].concat()))
+    };
+    for ended in of_records(["one/cond7_a.csv", "two/cond7_a.csv"]) {
+        assert_eq!(ended.status, 1, "{ended:?}");
+        assert!(ended.error.contains("error: one/cond7_a.csv: not read, or not all of it"), "{ended:?}");
+    }
+    // A good archive, and one of whose two files one is broken.
+    let archive = |name: &str, broken: &str| {
+        let text = fs::read(desk.path("two/cond7_a.csv")).unwrap();
+        let files = [("cond7_a.csv", text.as_slice()), ("cond7_b.csv", broken.as_bytes())];
+        fs::write(desk.path(name), stored_zip(&files)).unwrap();
+    };
+    archive("good.zip", "t,LON,LAT,P,Q\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,5,5\n3,4,2,2,1\n4,3,2,1,5\n5,1,1,3,2\n");
+    archive("bad.zip", "no table at all");
+    let [good, _] = of_records(["good.zip", "two/cond7_a.csv"]);
+    assert_eq!(good.status, 0, "{good:?}");
+    for ended in of_records(["bad.zip", "two/cond7_a.csv"]) {
+        assert!(ended.status == 1 && ended.error.contains("error: bad.zip: not read, or not all of it"), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option() {
+    let desk = Desk::new();
+    let turn = |rows: &mut Value| {
+        for value in rows.as_array_mut().unwrap() {
+            let turned = -value.as_f64().unwrap();
+            *value = json!(turned);
+        }
+    };
+    // Q of the identified models, matrices and the measured response, is positive the other way round.
+    desk.write("turned.json", |file| {
+        for condition in file["conditions"].as_array_mut().unwrap() {
+            for model in condition["identified_models"].as_array_mut().unwrap() {
+                if model["C"].is_array() {
+                    ["C", "D"].into_iter().for_each(|matrix| turn(&mut model[matrix][1]));
+                    continue;
+                }
+                for part in ["re", "im"] {
+                    model["frequency_response"][part][1].as_array_mut().unwrap().iter_mut().for_each(turn);
+                }
+            }
+        }
+    });
+    let words = "LON → Q differs by half a turn at all frequencies";
+    let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let found = |name: &str| crate::read_json(&desk.path(&format!("{name}/corrections.json")))["conditions"].clone();
+    let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
+    let out = joined(&said.out);
+    assert!(out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"), "{out}");
+    assert!(out.find(words) < out.find("Condition 7"), "before anything is blamed for it");
+    assert!(joined(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
+    assert!(!joined(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words));
+    desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"]).assert_done();
+    desk.gdcm(&["analyze", "small.json", "--out", "right"]).assert_done();
+    assert_eq!(found("back"), found("right"), "to the last digit");
+    assert_ne!(found("turned"), found("right"));
+}
+
+#[test]
+fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
+    let desk = Desk::new();
+    crate::assembling::foreign_tree(&desk.path("models"));
+    let assemble = |out: &str, more: &[&str]| {
+        let ended = desk.gdcm(&[&["assemble", "models", "--out", out], more].concat());
+        // What an inch is stands in the rules.
+        assert_eq!(ended.status, 2, "{ended:?}");
+        let rules = out.replace(".json", ".gdcm-rules.json");
+        let mut said = crate::read_json(&desk.path(&rules));
+        said["inputs"][0] = json!({"name": "LON", "unit": "%"});
+        said["on_axis"] = json!([["P", "LAT"], ["Q", "LON"], ["R", "PED"], ["NY", "PED"], ["NZ", "COL"]]);
+        said["conversions"] =
+            json!([{"channel": "LON", "from": "in", "factor": crate::assembling::PERCENT_IN_AN_INCH}]);
+        fs::write(desk.path(&rules), said.to_string()).unwrap();
+        let ended = desk.gdcm(&[&["assemble", "models", "--rules", &rules, "--out", out], more].concat());
+        assert_eq!(ended.status, 0, "{ended:?}");
+        desk.gdcm(&["check", out]).out.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    assert!(assemble("plain.json", &[]).contains("COL → NZ differs by half a turn"));
+    assert!(!assemble("turned.json", &["--sign", "NZ=-1"]).contains("half a turn"));
+}
+
+#[test]
+fn what_many_conditions_have_is_one_table_and_one_sentence() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["analyze", "--out", "out"]);
+    ended.assert_done();
+    let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    for sentence in [
+        "held responses need lead",
+        "what it would be with a delay or lead in each channel",
+        "check first the time alignment of the records",
+    ] {
+        assert_eq!(words.matches(sentence).count(), 1, "{sentence}: {}", ended.out);
+    }
+    let corrections = crate::read_json(&desk.path("out/corrections.json"));
+    let channels = |side: &str| -> Vec<(String, String)> {
+        let of = corrections[side].as_array().unwrap().iter();
+        of.map(|channel| (channel["name"].as_str().unwrap().to_owned(), channel["unit"].as_str().unwrap().to_owned()))
+            .collect()
+    };
+    let expected = |channels: &[(&str, &str)]| -> Vec<(String, String)> {
+        channels.iter().map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned())).collect()
+    };
+    assert_eq!(channels("inputs"), expected(&[("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")]));
+    let rates = [("P", "deg/s"), ("Q", "deg/s"), ("R", "deg/s"), ("NX", "m/s2"), ("NY", "m/s2"), ("NZ", "m/s2")];
+    assert_eq!(channels("outputs"), expected(&rates));
+}
+
+#[test]
+fn long_names_of_short_words_are_shortened_and_remedies_name_the_file() {
+    let desk = Desk::new();
+    desk.write("long.json", |file| file["conditions"][0]["name"] = json!("hover at low altitude ".repeat(4000)));
+    for arguments in [["check", "long.json"].as_slice(), &["analyze", "long.json", "--out", "out"]] {
+        let ended = desk.gdcm(arguments);
+        assert_eq!(ended.status, 0, "{arguments:?}");
+        assert!(ended.out.len() < 20_000, "{arguments:?}: {} letters", ended.out.len());
+    }
+    fs::write(desk.path("flight 7.parquet"), b"PAR1\x15\x04").unwrap();
+    let ended = desk.gdcm(&["convert", "flight 7.parquet", "--out", "models.json"]);
+    ended.assert_failed(2, &["pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"]);
 }
 
 /// Words that command lines are made of: commands, options, values that belong to some of them, and values that belong to none.

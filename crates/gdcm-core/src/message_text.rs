@@ -35,20 +35,24 @@ pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
-/// A text in which no word is longer than a message can bear: what is left out of one stands in its middle.
-pub fn shortened_words(text: &str) -> String {
-    /// Longer than the path of most files.
-    const LONGEST: usize = 400;
-    const KEPT: usize = 40;
-    let shortened = |word: &str| {
-        let letters = word.chars().count();
-        if letters <= LONGEST {
-            return word.to_owned();
-        }
-        let (start, end) = (word.chars().take(KEPT), word.chars().skip(letters - KEPT));
-        start.chain(std::iter::once('…')).chain(end).collect()
-    };
-    text.split(' ').map(shortened).collect::<Vec<String>>().join(" ")
+/// A message that is no longer than a reader can bear, nor any word in it: what is left out of either stands in its middle.
+pub fn shortened_message(text: &str) -> String {
+    /// Longer than the path of most files, and what is kept of each end.
+    const WORD: [usize; 2] = [400, 40];
+    /// Longer than every sentence of the program with the names of sixty columns in it, and what is kept of each end.
+    const MESSAGE: [usize; 2] = [2000, 900];
+    let words: Vec<String> = text.split(' ').map(|word| without_middle(word, WORD)).collect();
+    without_middle(&words.join(" "), MESSAGE)
+}
+
+/// A text of more than so many letters without its middle: so many of either end are kept.
+fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {
+    let letters = text.chars().count();
+    if letters <= longest {
+        return text.to_owned();
+    }
+    let (start, end) = (text.chars().take(kept), text.chars().skip(letters - kept));
+    start.chain(std::iter::once('…')).chain(end).collect()
 }
 
 /// The start of a text, no longer than a message can bear.
@@ -76,9 +80,16 @@ mod tests {
 
     #[test]
     fn a_word_of_seventy_thousand_letters_is_shortened_and_the_others_stay() {
-        let shown = shortened_words(&format!("condition {} is odd", "x".repeat(70_000)));
+        let shown = shortened_message(&format!("condition {} is odd", "x".repeat(70_000)));
         assert!(shown.starts_with("condition xxx") && shown.ends_with("xxx is odd") && shown.len() < 200, "{shown}");
-        assert_eq!(shortened_words("a  b"), "a  b");
+        assert_eq!(shortened_message("a  b"), "a  b");
+    }
+
+    #[test]
+    fn a_name_of_many_short_words_is_shortened_too() {
+        let shown = shortened_message(&format!("condition {} is odd", "hover at low altitude ".repeat(4000)));
+        assert!(shown.starts_with("condition hover at") && shown.ends_with("altitude  is odd"), "{shown}");
+        assert_eq!(shown.chars().count(), 1801);
     }
 
     #[test]

@@ -160,7 +160,7 @@ pub enum FileError {
     },
     /// The dataset of a study cannot be read.
     #[error(
-        "{}: the study's dataset cannot be opened: {dataset}; say where it is now (--dataset FILE)",
+        "{}: the study's dataset cannot be opened: {dataset}; say where it is now, with --dataset and its path",
         sanitized_path(path)
     )]
     StudyDataset {
@@ -248,8 +248,18 @@ impl FileError {
         FileError::Unwritable { path: path.to_owned(), reason: reason.to_owned() }
     }
 
-    pub(super) fn variables(path: &Path, fault: VariableFault) -> Self {
+    /// Why the variables of a file cannot be read; a remedy names the file.
+    pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
+        if let VariableFault::Unsupported { remedy, .. } = &mut fault {
+            let name = |path: &Path| sanitized(&path.file_name().unwrap_or_default().to_string_lossy());
+            *remedy = remedy.replace("{file}", &name(path)).replace("{stem}", &name(&path.with_extension("")));
+        }
         FileError::Variables { path: path.to_owned(), fault }
+    }
+
+    /// Whether the reader was stopped, by whoever asked for the file.
+    pub fn is_stopped(&self) -> bool {
+        matches!(self, Self::Variables { fault: VariableFault::Stopped, .. })
     }
 
     pub(super) fn export(path: &Path, fault: ExportFault) -> Self {

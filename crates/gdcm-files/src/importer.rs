@@ -182,7 +182,7 @@ pub(crate) fn import(
             break;
         }
         progress.reading(index + 1, files.len(), name);
-        let budget = ReadingBudget::new(MOST_MEMORY).stopped_by(Arc::clone(&stop)).telling(&tell);
+        let budget = ReadingBudget::default().stopped_by(Arc::clone(&stop)).telling(&tell);
         match import_file(path, name, &budget).and_then(|file| take(file, &budget)) {
             Ok(()) => {}
             Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),

@@ -18,6 +18,11 @@ use serde_json::value::RawValue;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::location::{Outline, Step, UnknownKeys, location_of};
+use crate::variables::ReadingBudget;
+
+/// Memory that a byte of a file of this program takes at most \[bytes\]: a number, of a digit and a comma at least, in a list that
+/// grows into twice its memory.
+const TYPED: u64 = 8;
 
 /// A kind of file: what its "format" and "version" have to say.
 #[derive(Clone, Copy, Debug)]
@@ -27,15 +32,17 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// The value that the text holds, and a caution for each key that is not known.
+    /// The value that the text holds, and a caution for each key that is not known. The memory for it is taken from the budget first.
     ///
     /// Another format or version is told before anything else is complained of.
     pub(super) fn decode<'t, T: Deserialize<'t>>(
         self,
         text: &'t [u8],
         path: &Path,
+        budget: &ReadingBudget<'_>,
     ) -> Result<(T, Vec<String>), FileError> {
         check_object(text, path)?;
+        budget.take(text.len() as u64, TYPED, "").map_err(|fault| FileError::variables(path, fault))?;
         let mut unknown = UnknownKeys::default();
         let mut json = serde_json::Deserializer::from_slice(text);
         let mut track = serde_path_to_error::Track::new();

@@ -7,18 +7,15 @@ use std::path::Path;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-use crate::dataset_file::{DatasetOrigin, load_dataset_bytes};
+use crate::dataset_file::{DatasetOrigin, dataset_from};
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer, importer_of};
 use crate::location::Outline;
 use crate::models_file::found_models;
-use crate::source::{GZIP_MAGIC, text_of, without_mark};
+use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 use crate::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
-
-/// Memory that a byte of a file of this program takes at most \[bytes\].
-const TYPED: u64 = 8;
 
 /// JSON, and whatever is packed by gzip.
 pub(crate) struct Json;
@@ -52,13 +49,12 @@ impl Importer for Json {
         match format.as_deref() {
             Some("\"gdcm-dataset\"") => {
                 // The text is unpacked again.
-                budget.take(text.len() as u64, TYPED + 2, "").map_err(wrong)?;
-                let loaded = load_dataset_bytes(bytes, DatasetOrigin::File(path.to_owned()))?;
+                let source = Source::of(bytes, path, budget)?;
+                let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
                 return Ok(Contents::Dataset(Box::new(loaded.dataset.as_ref().clone())));
             }
             Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
-                budget.take(text.len() as u64, TYPED, "").map_err(wrong)?;
-                if let Some(models) = found_models(text, path) {
+                if let Some(models) = found_models(text, path, budget) {
                     return Ok(Contents::Models(models));
                 }
             }

@@ -44,7 +44,7 @@ pub use corrections_file::*;
 pub use csv_table::{csv_text, save_tables};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
-    save_dataset, write_example,
+    load_dataset_within, save_dataset, write_example,
 };
 pub use exports::{
     About, EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, Exporter, check_export,

@@ -104,7 +104,10 @@ impl ModelReading<'_> {
                         let sha256 = sha256.clone();
                         self.take(ImportedFile { path: inner_path, name: &inner_name, sha256, contents }, budget)
                     });
-                    self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}")));
+                    match taken {
+                        Err(stopped) if stopped.is_stopped() => return Err(stopped),
+                        taken => self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}"))),
+                    }
                 }
                 self.found.ignored.extend(of_file(name, ignored));
                 // Its arrays are those of NumPy.

@@ -13,6 +13,7 @@ use crate::dataset_file::ModelText;
 use crate::file_error::FileError;
 use crate::json_text::{Format, Limited, list};
 use crate::output_set::OutputSet;
+use crate::variables::ReadingBudget;
 
 /// What a file of models calls itself.
 pub(super) const MODELS: Format = Format { name: "gdcm-models", version: 1 };
@@ -67,9 +68,9 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
 }
 
 /// The models of a text of this program; nothing where it is no such text.
-pub(super) fn found_models(text: &[u8], path: &Path) -> Option<Vec<FoundModel>> {
+pub(super) fn found_models(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Option<Vec<FoundModel>> {
     let read = |format: Format| {
-        let (text, _) = format.decode::<ModelsText>(text, path).ok()?;
+        let (text, _) = format.decode::<ModelsText>(text, path, budget).ok()?;
         format.check_read(&text.format, text.version, path).ok()?;
         Some(text.models)
     };
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn converted_models_keep_all_that_a_dataset_says_of_them() {
         let read = |bytes: &[u8], name: &str| -> FoundModels {
-            models_of_bytes(bytes, name, &crate::variables::ReadingBudget::new(1 << 24)).unwrap()
+            models_of_bytes(bytes, name, &ReadingBudget::new(1 << 24)).unwrap()
         };
         let before = read(DATASET.as_bytes(), "one.json");
         let text = written(&before.models);
@@ -162,7 +163,7 @@ mod tests {
     #[test]
     fn a_file_of_models_made_by_hand_is_read_as_far_as_it_goes() {
         let text = br#"{"format": "gdcm-models", "version": 1, "models": [{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}]}"#;
-        let found = models_of_bytes(text, "models.json", &crate::variables::ReadingBudget::new(1 << 20)).unwrap();
+        let found = models_of_bytes(text, "models.json", &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(found.models[0].draft.matrices[0].as_ref().unwrap()[(0, 0)], -1.0);
     }
 }

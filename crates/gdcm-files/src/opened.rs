@@ -47,13 +47,13 @@ fn begins_an_object(path: &Path) -> bool {
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, whichever the file says it is.
-pub fn load_any(path: &Path) -> Result<Opened, FileError> {
-    let source = Source::read(path)?;
-    match Outline::format_of(source.text(), &ReadingBudget::new(u64::MAX)).as_deref() {
-        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None)?)),
+/// Opens a dataset or a study, whichever the file says it is, within a budget.
+pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
+    let source = Source::read(path, budget)?;
+    match Outline::format_of(source.text(), budget).as_deref() {
+        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None, budget)?)),
         Some("\"gdcm-dataset\"") | None => {
-            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()))?))
+            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?))
         }
         Some(found) => Err(FileError::Format {
             path: path.to_owned(),

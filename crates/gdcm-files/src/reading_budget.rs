@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::importer::MOST_MEMORY;
 use crate::variables::VariableFault;
 
 /// Steps of work that reading one file may take: bytes of a text, elements of an array, values, comparisons of names.
@@ -26,6 +27,13 @@ impl ReadingBudget<'static> {
         let zero = || Cell::new(0);
         let stop = Arc::default();
         Self { most_memory: most, most_work: MOST_WORK, memory: zero(), work: zero(), stop, tell: &|_| () }
+    }
+}
+
+impl Default for ReadingBudget<'static> {
+    /// The budget of any one file, which nobody stops.
+    fn default() -> Self {
+        Self::new(MOST_MEMORY)
     }
 }
 

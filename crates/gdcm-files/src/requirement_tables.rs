@@ -11,6 +11,7 @@ use super::file_error::{ContentError, ContentFault, FileError};
 use super::json_text::{Format, json_error};
 use super::output_set::OutputSet;
 use super::source::Source;
+use super::variables::ReadingBudget;
 
 const TOLERANCES: Format = Format { name: "gdcm-tolerances", version: 1 };
 
@@ -28,15 +29,16 @@ struct TolerancesText {
 /// # Errors
 /// [`FileError`] with the line where the file cannot be read, or a boundary is none.
 pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
-    let source = Source::read(path)?;
+    let source = Source::read(path, &ReadingBudget::default())?;
     let text = source.text();
     serde_json::from_slice(text).map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
 /// Reads a table of tolerances; whole, or not at all. Keys that are not known are cautions.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
-    let source = Source::read(path)?;
-    let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path)?;
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
     TOLERANCES.check_read(&text.format, text.version, path)?;
     let refused = |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
     let table = ToleranceTable::new(text.source, text.tolerances);

@@ -13,6 +13,7 @@ use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::{Format, list};
 use crate::output_set::OutputSet;
 use crate::source::Source;
+use crate::variables::ReadingBudget;
 
 /// How the name of a rules file ends.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
@@ -26,8 +27,9 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
 
 /// Reads a rules file; whole, or not at all. Keys that are not known are cautions.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
-    let source = Source::read(path)?;
-    let (text, cautions) = FORMAT.decode::<RulesText>(source.text(), path)?;
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, cautions) = FORMAT.decode::<RulesText>(source.text(), path, &budget)?;
     FORMAT.check_read(&text.format, text.version, path)?;
     let rules = rules_of(text).map_err(|flaw| FileError::content(path, flaw))?;
     Ok((rules, cautions))

@@ -31,10 +31,10 @@ pub(super) struct Source<'b> {
 }
 
 impl Source<'static> {
-    /// Reads a file, unpacking it where it is packed.
-    pub(super) fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = read_bytes(path, LARGEST_TEXT, &ReadingBudget::new(u64::MAX))?;
-        let Source { sha256, text } = Source::of(&bytes, path)?;
+    /// Reads a file within a budget, unpacking it where it is packed.
+    pub(super) fn read(path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
+        let bytes = read_bytes(path, LARGEST_TEXT, budget)?;
+        let Source { sha256, text } = Source::of(&bytes, path, budget)?;
         let unpacked = if let Cow::Owned(unpacked) = text { Some(unpacked) } else { None };
         Ok(Source { sha256, text: Cow::Owned(unpacked.unwrap_or(bytes)) })
     }
@@ -42,9 +42,8 @@ impl Source<'static> {
 
 impl<'b> Source<'b> {
     /// Takes bytes that are already at hand; `path` is what an error calls them.
-    pub(super) fn of(bytes: &'b [u8], path: &Path) -> Result<Self, FileError> {
-        let budget = ReadingBudget::new(u64::MAX);
-        Ok(Source { sha256: sha256(bytes, path, &budget)?, text: text_of(bytes, path, &budget)? })
+    pub(super) fn of(bytes: &'b [u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
+        Ok(Source { sha256: sha256(bytes, path, budget)?, text: text_of(bytes, path, budget)? })
     }
 
     /// The text, without a byte order mark.
@@ -176,7 +175,7 @@ impl FileStamp {
 /// # Errors
 /// Where the file cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, FileError> {
-    Ok(Source::read(path)?.sha256)
+    Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }
 
 /// Whether there is such a file.
@@ -216,16 +215,17 @@ mod source_tests {
             encoder.finish().unwrap()
         };
         let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
-        assert_eq!(Source::of(&packed, Path::new("x")).unwrap().text(), b"{}");
+        let of = |bytes| Source::of(bytes, Path::new("x"), &ReadingBudget::default());
+        assert_eq!(of(&packed).unwrap().text(), b"{}");
         let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
-        assert!(matches!(Source::of(&strange, Path::new("x")), Err(FileError::Gzip { .. })));
+        assert!(matches!(of(&strange), Err(FileError::Gzip { .. })));
         let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
-        assert!(matches!(Source::of(&cut, Path::new("x")), Err(FileError::GzipCutOff { .. })));
+        assert!(matches!(of(&cut), Err(FileError::GzipCutOff { .. })));
     }
 
     #[test]
     fn a_byte_order_mark_is_no_part_of_the_text() {
-        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x")).unwrap();
+        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default()).unwrap();
         assert_eq!(source.text(), b"{}");
     }
 }

@@ -21,6 +21,7 @@ use crate::json_text::Format;
 use crate::json_text::list;
 use crate::output_set::{Existing, OutputSet};
 use crate::source::Source;
+use crate::variables::ReadingBudget;
 
 /// Most variants that a study file may hold.
 pub(crate) const MOST_VARIANTS: usize = 1000;
@@ -258,8 +259,9 @@ fn save(
 
 /// What a study file says its dataset is, in words: the name of its file. None where the study cannot be read.
 pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
-    let source = Source::read(path).ok()?;
-    let (text, _) = FORMAT.decode::<StudyText>(source.text(), path).ok()?;
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget).ok()?;
+    let (text, _) = FORMAT.decode::<StudyText>(source.text(), path, &budget).ok()?;
     Some(match text.dataset.path {
         None => format!("the {EMBEDDED}"),
         Some(path) => Path::new(&path).file_name()?.to_string_lossy().into_owned(),
@@ -268,19 +270,25 @@ pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
 
 /// Opens a study and the dataset it is about: where the study says, or else beside the study.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
-    study_from(&Source::read(path)?, path, None)
+    let budget = ReadingBudget::default();
+    study_from(&Source::read(path, &budget)?, path, None, &budget)
 }
 
-/// Opens a study whose dataset has moved to `dataset`.
-pub fn open_study_of(path: &Path, dataset: &Path) -> Result<OpenedStudy, FileError> {
-    study_from(&Source::read(path)?, path, Some(dataset))
+/// Opens a study whose dataset has moved to `dataset`, both within one budget.
+pub fn open_study_of(path: &Path, dataset: &Path, budget: &ReadingBudget<'_>) -> Result<OpenedStudy, FileError> {
+    study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
 /// The study that a source holds; its dataset is at `moved`, or where the study says.
-pub(super) fn study_from(source: &Source<'_>, path: &Path, moved: Option<&Path>) -> Result<OpenedStudy, FileError> {
-    let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path)?;
+pub(super) fn study_from(
+    source: &Source<'_>,
+    path: &Path,
+    moved: Option<&Path>,
+    budget: &ReadingBudget<'_>,
+) -> Result<OpenedStudy, FileError> {
+    let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
     FORMAT.check_read(&text.format, text.version, path)?;
-    let mut loaded = load_referenced(&text.dataset, path, moved)?;
+    let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
     let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
         .map_err(|error| FileError::content(path, error))?;
     decisions.signs = text.signs;
@@ -300,14 +308,17 @@ fn load_referenced(
     reference: &DatasetReference,
     study: &Path,
     moved: Option<&Path>,
+    budget: &ReadingBudget<'_>,
 ) -> Result<LoadedDataset, FileError> {
     let path = match (moved, &reference.path) {
         (Some(moved), _) => moved.to_owned(),
         (None, None) => return embedded_example(),
         (None, Some(relative)) => referenced_path(study, relative),
     };
-    let load = |path: PathBuf| dataset_from(&Source::read(&path)?, DatasetOrigin::File(path));
-    load(path).map_err(|error| FileError::StudyDataset { path: study.to_owned(), dataset: Box::new(error) })
+    let load = |path: PathBuf| dataset_from(&Source::read(&path, budget)?, DatasetOrigin::File(path), budget);
+    let lost = |error: FileError| FileError::StudyDataset { path: study.to_owned(), dataset: Box::new(error) };
+    // A dataset whose reading was stopped is not lost.
+    load(path).map_err(|error| if error.is_stopped() { error } else { lost(error) })
 }
 
 /// Where the study says that its dataset is, or beside the study if it is only there.

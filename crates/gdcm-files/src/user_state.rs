@@ -10,6 +10,7 @@ use super::file_error::FileError;
 use super::json_text::Format;
 use super::output_set::{make_directory, write_whole};
 use super::source::Source;
+use super::variables::ReadingBudget;
 
 /// Most files that are listed.
 const MOST: usize = 10;
@@ -29,8 +30,9 @@ struct RecentText {
 /// The files listed in `directory`, the newest first; none where there is no list, or none that can be read.
 pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let path = directory.join(NAME);
-    let Ok(source) = Source::read(&path) else { return Vec::new() };
-    let decoded = FORMAT.decode::<RecentText>(source.text(), &path);
+    let budget = ReadingBudget::default();
+    let Ok(source) = Source::read(&path, &budget) else { return Vec::new() };
+    let decoded = FORMAT.decode::<RecentText>(source.text(), &path, &budget);
     decoded.map_or_else(|_| Vec::new(), |(text, _)| text.files.into_iter().map(PathBuf::from).collect())
 }
 

@@ -192,7 +192,7 @@ pub enum VariableFault {
         variable: String,
         /// What it is.
         what: String,
-        /// How to come by the data all the same.
+        /// How to come by the data all the same, with `{file}` and `{stem}` in the place of the file's name with and without its ending.
         remedy: String,
     },
     /// The file holds, or claims to hold, more than is read.

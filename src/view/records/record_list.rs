@@ -61,19 +61,32 @@ pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     }
 }
 
-/// Problems in words; channels without a column in one sentence.
+/// Problems in words; those that page Columns mends in one sentence a kind, where they are of several channels.
 fn problem_words(problems: &[LayoutProblem]) -> Vec<String> {
-    let missing: Vec<(&String, &String)> = problems
-        .iter()
-        .filter_map(
-            |of| if let LayoutProblem::NoColumn { channel, found, .. } = of { Some((channel, found)) } else { None },
+    let (mut missing, mut unsaid, mut others, mut columns) = (Vec::new(), Vec::new(), Vec::new(), "");
+    for problem in problems {
+        match problem {
+            LayoutProblem::NoColumn { channel, found, .. } => {
+                columns = found;
+                missing.push((channel.as_str(), problem));
+            }
+            LayoutProblem::UnsaidUnit { channel, .. } => unsaid.push((channel.as_str(), problem)),
+            _ => others.push(problem.to_string()),
+        }
+    }
+    let told = |kind: Vec<(&str, &LayoutProblem)>, sentence: &dyn Fn(String) -> String| match kind[..] {
+        [] => None,
+        [(_, problem)] => Some(problem.to_string()),
+        _ => Some(sentence(kind.iter().map(|(channel, _)| *channel).collect::<Vec<_>>().join(", "))),
+    };
+    let missing =
+        told(missing, &|names| format!("no column is {names}; page Columns says which are (columns: {columns})"));
+    let unsaid = told(unsaid, &|names| {
+        format!(
+            "the file does not say the units of {names}, and their samples can be in several; page Columns says them"
         )
-        .collect();
-    let [(_, found), _, ..] = missing[..] else { return problems.iter().map(ToString::to_string).collect() };
-    let names: Vec<&str> = missing.iter().map(|(channel, _)| channel.as_str()).collect();
-    let sentence = format!("no column is {}; page Columns says which are (columns: {found})", names.join(", "));
-    let others = problems.iter().filter(|problem| !matches!(problem, LayoutProblem::NoColumn { .. }));
-    std::iter::once(sentence).chain(others.map(ToString::to_string)).collect()
+    });
+    missing.into_iter().chain(unsaid).chain(others).collect()
 }
 
 fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut Vec<Command>) {
@@ -232,10 +245,16 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
     };
     let factor = used.map_or(1.0, |used| used.factor);
     let column = column_ui(ui, &format!("Column of {name}"), row, used.map(|used| used.column));
-    commands.extend(column.map(|column| with(ColumnUse::times(column, factor))));
-    let label = format!("Factor of the column of {name}");
-    let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
-    commands.extend(typed.flatten().zip(used).map(|(factor, used)| with(ColumnUse { factor, ..used })));
+    commands.extend(column.map(|column| with(ColumnUse::by_unit(&row.table, column, unit))));
+    let open_units = used.map_or_else(Vec::new, |used| used.open_units(&row.table, unit));
+    if open_units.is_empty() {
+        let label = format!("Factor of the column of {name}");
+        let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
+        commands.extend(typed.flatten().zip(used).map(|(factor, used)| with(ColumnUse { factor, ..used })));
+    } else {
+        let said = unit_ui(ui, &format!("Unit of the column of {name}"), &open_units);
+        commands.extend(said.zip(used).map(|(said, used)| with(used.in_unit(said, unit))));
+    }
     let delay_s = channels.get(signal.index).map_or(0.0, |channel| channel.delay_s);
     let label = format!("Time skew of {name}");
     let typed = number_entry_ui(ui, &label, &number(s_to_ms(delay_s)), "0", FIELD_WIDTH, commands);
@@ -253,6 +272,21 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
         commands.extend(typed.map(|factor| set(ChannelRemedy { delay_s, factor: factor.unwrap_or(1.0) })));
     }
     ui.end_row();
+}
+
+/// A choice among the units that samples can be in, of which none is said; what was chosen.
+fn unit_ui<'u>(ui: &mut Ui, name: &str, units: &[&'u str]) -> Option<&'u str> {
+    let mut said = None;
+    let shown = ComboBox::from_id_salt(name).width(FIELD_WIDTH).selected_text("unit?");
+    let shown = shown.show_ui(ui, |ui| {
+        for unit in units {
+            if ui.selectable_label(false, *unit).clicked() {
+                said = Some(*unit);
+            }
+        }
+    });
+    named(shown.response, AccessRole::ComboBox, name);
+    said
 }
 
 /// A choice among the columns of a record; what was chosen anew.

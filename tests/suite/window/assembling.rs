@@ -5,7 +5,7 @@ use gdcm::view::assembling::{AssemblingCommand, AssemblyState, COLUMNS};
 use super::views::give;
 use super::*;
 
-fn bench(window: &Window) -> &AssemblyState {
+pub(super) fn bench(window: &Window) -> &AssemblyState {
     state(window).assembling.as_ref().expect("models are being imported")
 }
 

@@ -74,7 +74,7 @@ fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found()
     let folder = tempfile::tempdir().unwrap();
     let (dataset, study) = (folder.path().join("data.json"), folder.path().join("theirs.gdcm-study.json"));
     std::fs::copy(small_dataset(), &dataset).unwrap();
-    let mut theirs = window_with(load_any(&dataset).unwrap(), Setup::default());
+    let mut theirs = window_with(load_any(&dataset, &Default::default()).unwrap(), Setup::default());
     save_as(&mut theirs, &study);
     drop(theirs);
     let moved = folder.path().join("moved.json");

@@ -10,6 +10,7 @@ mod decisions;
 mod edges;
 mod figures;
 mod files;
+mod foreign;
 mod forms;
 mod hands;
 mod keyboard;

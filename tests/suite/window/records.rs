@@ -220,7 +220,7 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
 #[test]
 fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-dataset.json.gz");
-    let mut window = window_with(load_any(&path).unwrap(), warm());
+    let mut window = window_with(load_any(&path, &Default::default()).unwrap(), warm());
     click(&mut window, CONDITION_10);
     show(&mut window, View::Records);
     wait_until(&mut window, "the records", |window| rows(window) == 9);

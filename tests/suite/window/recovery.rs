@@ -68,7 +68,7 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let dataset = folder.path().join("data.json");
     std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"), &dataset).unwrap();
-    let mut lost = window_with(load_any(&dataset).unwrap(), setup(directory.path()));
+    let mut lost = window_with(load_any(&dataset, &Default::default()).unwrap(), setup(directory.path()));
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut lost, &path);
     slide(&mut lost, "α gains", 12.5);

@@ -33,7 +33,7 @@ impl Copy {
 
     fn window(&self) -> Window {
         let setup = Setup { look_every: Duration::from_millis(20), ..Setup::default() };
-        window_with(load_any(&self.path).unwrap(), setup)
+        window_with(load_any(&self.path, &Default::default()).unwrap(), setup)
     }
 }
 

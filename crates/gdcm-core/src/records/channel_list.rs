@@ -45,6 +45,7 @@ impl SaidChannel {
     pub fn rule(&self) -> ChannelRule {
         ChannelRule {
             unit: self.unit.clone(),
+            unit_in_files: Some(self.unit.clone()).filter(|unit| !unit.is_empty()),
             aliases: self.column.iter().cloned().collect(),
             ..ChannelRule::named(self.name.clone())
         }

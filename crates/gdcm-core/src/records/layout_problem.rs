@@ -101,6 +101,21 @@ pub enum LayoutProblem {
         /// Its name without marks.
         plain: String,
     },
+    /// A unit that neither the file nor the samples say.
+    #[error(
+        "the file does not say the unit of {channel} (column {column}), and its samples can be in {units}; say which: \
+         --unit \"{channel}={unit}\", or page Columns"
+    )]
+    UnsaidUnit {
+        /// The channel.
+        channel: String,
+        /// The column, in quotation marks.
+        column: String,
+        /// The channel's unit.
+        unit: String,
+        /// The units that the samples can be in, in words.
+        units: String,
+    },
     /// A unit that cannot be converted.
     #[error(
         "{channel} has the unit \"{from}\" in the file (column {column}) and \"{to}\" is wanted: there is no factor from one to the other; say one"
@@ -224,19 +239,5 @@ pub enum LayoutCaution {
         count: usize,
         /// Of how many.
         samples: usize,
-    },
-    /// Rates so small that they may be in another unit.
-    #[error("no rate varies by more than {} {unit}, and the file does not say the unit: perhaps it has rad/s", telling(*most, 2))]
-    PerhapsRadians {
-        /// The greatest range of a rate.
-        most: f64,
-        /// The unit taken.
-        unit: String,
-    },
-    /// Parts of the travel so small that they may be fractions.
-    #[error("no input varies by more than {} %, and the file does not say the unit: perhaps it has fractions of the travel", telling(*most, 2))]
-    PerhapsFractions {
-        /// The greatest range of an input.
-        most: f64,
     },
 }

@@ -1,5 +1,6 @@
 //! Columns proposed for the time and the channels of a record.
 
+use super::sample_units::possible_units;
 use super::*;
 use crate::assembly::{ChannelRule, SignedName, conversion_factor, folded_name, same_channel, sign_between};
 use crate::units::number;
@@ -35,7 +36,8 @@ impl RecordLayout {
     ///          same; among several the one whose unit can be converted
     /// else     columns that the file says are inputs or outputs, in order, if there are as many; columns without names are said
     /// sign     as a mark says that stands in the name, or in the one that is asked for: -R, az (down); az onto NZ is asked
-    /// factor   from the file's unit to the channel's; a file that says none is taken as the channel's rule says
+    /// factor   from the file's unit to the channel's; of a file that says none, from what is said of the channel, else from the only
+    ///          unit that its samples can be in, else it is asked for
     /// ```
     pub fn proposed(table: &RecordTable, channels: &RecordChannels, time: &TimeWish) -> LayoutProposal {
         let mut proposal = LayoutProposal::default();
@@ -185,23 +187,21 @@ impl LayoutProposal {
         column: usize,
     ) -> Option<ColumnUse> {
         let quoted = table.quoted(column);
-        let of_file = table.columns[column].unit.as_deref().filter(|unit| !unit.trim().is_empty());
         let said = match channels.said.get(&rule.name) {
             Some(SaidConversion::Factor(factor)) => {
                 self.notes.push(format!("{}: column {quoted}, × {} as asked", rule.name, number(*factor)));
                 return Some(ColumnUse::times(column, *factor));
             }
             Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
-            None => of_file,
+            None => table.columns[column].said_unit(),
         };
-        let Some(from) = said.or(rule.unit_in_files.as_deref()).filter(|_| !rule.unit.is_empty()) else {
-            let unit = match said {
-                Some(unit) => format!(" as it is, in {unit}"),
-                None if rule.unit.is_empty() => " as it is".to_owned(),
-                None => format!(", taken to be in {} as the file does not say", rule.unit),
-            };
-            self.notes.push(format!("{}: column {quoted}{unit}", rule.name));
+        if rule.unit.is_empty() {
+            let unit = said.map_or_else(String::new, |unit| format!(", in {unit}"));
+            self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
             return Some(ColumnUse::as_it_is(column));
+        }
+        let Some(from) = said.or(rule.unit_in_files.as_deref()) else {
+            return Some(self.by_samples(table, rule, column));
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {
             let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
@@ -210,10 +210,25 @@ impl LayoutProposal {
         };
         self.notes.push(match (factor == 1.0, said) {
             (true, Some(unit)) => format!("{}: column {quoted}, in {unit}", rule.name),
-            (true, None) => format!("{}: column {quoted}, taken to be in {from} as the file does not say", rule.name),
+            (true, None) => format!("{}: column {quoted}, in {from} as is said of the channel", rule.name),
             (false, _) => format!("{}: column {quoted}, {from} → {} (× {})", rule.name, rule.unit, number(factor)),
         });
         Some(ColumnUse::times(column, factor))
+    }
+
+    /// The column of a file that does not say its unit, in words where the samples leave nothing open.
+    fn by_samples(&mut self, table: &RecordTable, rule: &ChannelRule, column: usize) -> ColumnUse {
+        let used = ColumnUse::by_unit(table, column, &rule.unit);
+        let (name, quoted) = (&rule.name, table.quoted(column));
+        match possible_units(&table.columns[column], &rule.unit).as_slice() {
+            _ if used.is_unit_open => {}
+            [only] => self.notes.push(format!(
+                "{name}: column {quoted}, taken to be in {only}: the file does not say, and no other unit is possible{}",
+                if used.factor == 1.0 { String::new() } else { format!(" (× {})", number(used.factor)) }
+            )),
+            _ => self.notes.push(format!("{name}: column {quoted} as it is, for the file does not say its unit")),
+        }
+        used
     }
 }
 

@@ -6,8 +6,7 @@ use crate::dataset::ChannelRemedy;
 use std::collections::BTreeMap;
 
 fn rule(name: &str, unit: &str) -> ChannelRule {
-    let unit = unit.to_owned();
-    ChannelRule { unit_in_files: Some(unit.clone()), unit, ..ChannelRule::named(name) }
+    ChannelRule { unit: unit.to_owned(), ..ChannelRule::named(name) }
 }
 
 fn channels() -> RecordChannels {
@@ -59,7 +58,7 @@ fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
         proposal.notes,
         [
             "time from column \"Time (s)\", in s",
-            "LON: column \"delta_b\", taken to be in % as the file does not say",
+            "LON: column \"delta_b\", taken to be in %: the file does not say, and no other unit is possible",
             "LAT: column \"lateral\", in %",
             "P: column \"roll rate\", rad/s → deg/s (× 57.29577951308232)",
             "NZ: column \"nz\", g → m/s² (× 9.80665)",
@@ -97,14 +96,52 @@ fn a_rate_of_thousands_of_degrees_is_refused_with_what_it_may_be() {
 }
 
 #[test]
-fn rates_that_hardly_move_in_a_file_without_units_may_be_in_radians() {
+fn a_unit_that_neither_the_file_nor_the_samples_say_is_asked_for_and_one_that_the_samples_say_is_taken() {
+    let with = |unit: &str, peak: f64, of_channel: &str| {
+        let mut channels = channels();
+        channels.outputs[0].unit = of_channel.to_owned();
+        let mut table = record();
+        table.columns[3] = column("roll rate", unit, |k| peak * (k - 30.0) / 30.0);
+        let proposal = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+        assert_eq!(proposal.layout.flight_record(&table, &channels).is_ok(), proposal.problems.is_empty());
+        let factor = proposal.layout.outputs[0].unwrap().factor;
+        if proposal.problems.is_empty() {
+            Ok((factor, proposal.notes[3].clone()))
+        } else {
+            Err(told(&proposal.problems))
+        }
+    };
+    // 6.9 rad/s are 395 deg/s, which a helicopter may reach; 7.1 rad/s are 407.
+    assert_eq!(
+        with("", 6.9, "deg/s").unwrap_err(),
+        "the file does not say the unit of P (column \"roll rate\"), and its samples can be in deg/s or rad/s; say which: \
+         --unit \"P=deg/s\", or page Columns"
+    );
+    let (factor, words) = with("", 7.1, "deg/s").unwrap();
+    assert_eq!(
+        (factor, words.ends_with("taken to be in deg/s: the file does not say, and no other unit is possible")),
+        (1.0, true)
+    );
+    // Forty radians in a second no helicopter turns: degrees, of which the channel has fewer.
+    assert_eq!(with("", 40.0, "rad/s").unwrap().0, std::f64::consts::PI / 180.0);
+    assert_eq!(with("deg/s", 6.9, "deg/s").unwrap().0, 1.0);
+    assert_eq!(with("", 0.0, "deg/s").unwrap().0, 1.0, "nothing is nothing in any unit");
+    assert_eq!(with("", 6.9, "furlong").unwrap().0, 1.0, "a unit that nobody knows is converted to no other");
+}
+
+#[test]
+fn a_unit_that_is_said_of_the_channel_is_that_of_files_that_say_none() {
     let mut table = record();
     table.columns[3].unit = None;
-    let words = proposed(&table).cautions[0].to_string();
-    assert_eq!(
-        words,
-        "no rate varies by more than 0.40 deg/s, and the file does not say the unit: perhaps it has rad/s"
-    );
+    let mut channels = channels();
+    channels.said.insert("P".to_owned(), SaidConversion::Unit("rad/s".to_owned()));
+    let said = RecordLayout::proposed(&table, &channels, &TimeWish::default());
+    assert_eq!((said.problems.len(), said.layout.outputs[0].unwrap().factor), (0, 180.0 / std::f64::consts::PI));
+    // Whoever reads the record again by the dataset, which is in deg/s, comes to the same samples.
+    let entry = said.layout.condition_record(&table, &RecordGuess::default(), &channels);
+    let again = RecordChannels { said: BTreeMap::new(), ..channels.clone() }.of_named_records();
+    let again = LaidOutRecord::proposed(table.clone(), &again, &TimeWish::default()).0.as_said(&entry, &again);
+    assert_eq!(again.flight.as_deref(), Some(&said.layout.flight_record(&table, &channels).unwrap()));
 }
 
 #[test]
@@ -169,7 +206,11 @@ fn columns_without_names_are_never_taken_by_themselves() {
     let proposal = proposed(&table);
     assert_eq!(proposal.problems, [LayoutProblem::Unnamed { channel: "LON".into(), found: 5 }]);
     assert_eq!(proposal.layout.inputs, [None, None]);
-    let said = |name: &str, unit: &str, alias: &str| ChannelRule { aliases: vec![alias.into()], ..rule(name, unit) };
+    let said = |name: &str, unit: &str, alias: &str| ChannelRule {
+        unit_in_files: Some(unit.into()),
+        aliases: vec![alias.into()],
+        ..rule(name, unit)
+    };
     let channels = RecordChannels {
         inputs: vec![said("LON", "%", "#3"), said("LAT", "%", "#2")],
         outputs: vec![said("P", "deg/s", "#5"), said("NZ", "m/s²", "-#4")],
@@ -239,13 +280,14 @@ fn coordinates_of_the_place_are_not_sticks_even_under_their_very_names() {
 fn inputs_and_outputs_that_the_file_tells_apart_are_taken_in_order() {
     let side =
         |name: &str, side, scale: f64| RecordColumn { side: Some(side), ..column(name, "", move |k| scale * k.sin()) };
-    let table = table(vec![
+    let mut table = table(vec![
         column("t", "", |k| 0.01 * k),
         side("inr_1", ChannelSide::Input, 10.0),
         side("inr_2", ChannelSide::Input, 20.0),
         side("outr_1", ChannelSide::Output, 30.0),
         side("outr_2", ChannelSide::Output, 40.0),
     ]);
+    table.columns[4].unit = Some("m/s^2".to_owned());
     let proposal = proposed(&table);
     assert_eq!(proposal.problems, []);
     assert_eq!(proposal.layout.outputs[1], Some(ColumnUse::as_it_is(4)));

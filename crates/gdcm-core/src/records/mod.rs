@@ -19,6 +19,7 @@ mod record_dataset;
 mod record_layout;
 mod record_table;
 mod resampling;
+mod sample_units;
 mod spectrogram;
 mod time_base;
 mod topic_tables;

@@ -1,7 +1,8 @@
 //! Which columns of a record are its time and its channels.
 
+use super::sample_units::{magnitude, unsaid_unit};
 use super::*;
-use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor};
+use crate::assembly::ChannelRule;
 use crate::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
 use crate::identification::FlightRecord;
 use nalgebra::DMatrix;
@@ -14,6 +15,8 @@ pub struct ColumnUse {
     pub column: usize,
     /// How many of the channel's units one of the column's is; negative where the sign is the other one.
     pub factor: f64,
+    /// Whether the factor is still to be said: neither the file nor the samples say which unit these are in.
+    pub is_unit_open: bool,
     /// What is put right in this record alone.
     pub remedy: ChannelRemedy,
 }
@@ -26,7 +29,7 @@ impl ColumnUse {
 
     /// The column times a factor.
     pub fn times(column: usize, factor: f64) -> Self {
-        Self { column, factor, remedy: ChannelRemedy::NONE }
+        Self { column, factor, is_unit_open: false, remedy: ChannelRemedy::NONE }
     }
 
     /// What its samples are multiplied by in all.
@@ -80,9 +83,8 @@ impl RecordLayout {
             let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
-        let (mut inputs, mut outputs) =
-            (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
-        let all: Vec<_> = inputs.iter().chain(&outputs).copied().collect();
+        let (inputs, outputs) = (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
+        let all: Vec<_> = inputs.into_iter().chain(outputs).collect();
         for (index, (rule, used)) in all.iter().enumerate() {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
             let (channel, column) = (rule.name.clone(), table.quoted(used.column));
@@ -104,10 +106,6 @@ impl RecordLayout {
                 same.map(|(first, _)| LayoutCaution::Same { first: first.name.clone(), second: rule.name.clone() }),
             );
         }
-        let unsaid = |(rule, _): &(&ChannelRule, ColumnUse)| !channels.said.contains_key(&rule.name);
-        inputs.retain(unsaid);
-        outputs.retain(unsaid);
-        cautions.extend(perhaps_other_units(table, &inputs, &outputs));
         cautions
     }
 
@@ -204,9 +202,9 @@ impl RecordLayout {
     ) -> ConditionRecord {
         let sides = [(&channels.inputs, &self.inputs), (&channels.outputs, &self.outputs)];
         let used = sides.into_iter().flat_map(|(rules, uses)| chosen(rules, uses));
-        let remedied = used.filter(|(_, used)| used.remedy != ChannelRemedy::NONE);
+        let remedies = used.map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
         ConditionRecord {
-            remedies: remedied.map(|(rule, used)| (rule.name.clone(), used.remedy)).collect(),
+            remedies: remedies.filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect(),
             variable: table.source.variable.clone(),
             sha256: Some(table.source.sha256.clone()).filter(|hash| !hash.is_empty()),
             kind: guess.kind,
@@ -270,7 +268,10 @@ fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> 
         return Some(LayoutProblem::Delay { channel, delay_s });
     }
     let range = table.columns.get(used.column).and_then(|column| column.range());
-    if range.is_none() { Some(LayoutProblem::Empty { channel, column }) } else { magnitude(table, rule, used) }
+    if range.is_none() {
+        return Some(LayoutProblem::Empty { channel, column });
+    }
+    unsaid_unit(table, rule, used).or_else(|| magnitude(table, rule, used))
 }
 
 fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
@@ -338,74 +339,6 @@ const LONGEST_DELAY_S: f64 = 10.0;
 /// The longest line between two samples, over the median step: gaps of three samples, as where records are prepared (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
-// What samples can be in a unit, and what they cannot.
-
-/// The most that a helicopter has of a dimension, in a unit of that dimension.
-const MOST: [(Dimension, f64, &str); 7] = [
-    (Dimension::AngularRate, 400.0, "deg/s"),
-    (Dimension::Angle, 3600.0, "deg"),
-    (Dimension::AngularAcceleration, 5000.0, "deg/s^2"),
-    (Dimension::Acceleration, 15.0, "g"),
-    (Dimension::Speed, 500.0, "kt"),
-    (Dimension::Part, 3.0, "1"),
-    (Dimension::Length, 50_000.0, "m"),
-];
-/// A rate \[deg/s\] or a part of travel \[%\] that varies by less than this in a whole manoeuvre may be in another unit.
-const LEAST_RANGE: f64 = 1.5;
-
-/// The fault of a channel whose samples cannot be in its unit.
-pub(super) fn magnitude(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
-    // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
-    let column = table.columns.get(used.column).filter(|column| column.meaning.is_none())?;
-    let (least, most) = column.range()?;
-    let value = least.abs().max(most.abs()) * used.gain().abs();
-    let unit = PhysicalUnit::of(&rule.unit)?;
-    let (_, limit, of) = MOST.into_iter().find(|(dimension, ..)| *dimension == unit.dimension)?;
-    let limit = limit * conversion_factor(of, &rule.unit)?;
-    if value <= limit {
-        return None;
-    }
-    let hint = match unit.dimension {
-        Dimension::AngularRate if column.unit.as_deref().is_some_and(|unit| unit.contains("rad")) => {
-            "; its samples look like deg/s"
-        }
-        Dimension::Part if rule.unit != "%" => "; its samples look like %",
-        _ => "",
-    };
-    Some(LayoutProblem::Magnitude {
-        channel: rule.name.clone(),
-        column: table.quoted(used.column),
-        value,
-        most: limit,
-        unit: rule.unit.clone(),
-        hint: hint.to_owned(),
-    })
-}
-
-/// Channels whose unit the file does not say, and that vary so little that they may be in another.
-pub(super) fn perhaps_other_units(
-    table: &RecordTable,
-    inputs: &[(&ChannelRule, ColumnUse)],
-    outputs: &[(&ChannelRule, ColumnUse)],
-) -> Vec<LayoutCaution> {
-    // The greatest range of those channels of a dimension that have no unit in the file.
-    let most = |channels: &[(&ChannelRule, ColumnUse)], dimension: Dimension, unit: &str| -> Option<f64> {
-        let range = |(rule, used): &(&ChannelRule, ColumnUse)| {
-            let column = table.columns.get(used.column).filter(|column| column.unit.is_none())?;
-            let (least, most) = column.range()?;
-            let is_it = PhysicalUnit::of(&rule.unit).is_some_and(|unit| unit.dimension == dimension);
-            is_it.then_some((most - least) * used.factor.abs() * conversion_factor(&rule.unit, unit)?)
-        };
-        channels.iter().filter_map(range).reduce(f64::max)
-    };
-    let is_small = |range: &f64| *range > 0.0 && *range < LEAST_RANGE;
-    let rates = most(outputs, Dimension::AngularRate, "deg/s").filter(is_small);
-    let parts = most(inputs, Dimension::Part, "%").filter(is_small);
-    let radians = rates.map(|most| LayoutCaution::PerhapsRadians { most, unit: "deg/s".to_owned() });
-    let fractions = parts.map(|most| LayoutCaution::PerhapsFractions { most });
-    radians.into_iter().chain(fractions).collect()
-}
-
 // The channels that records are to give.
 
 /// What the engineer says of the samples of a channel, whatever their file says.
@@ -432,19 +365,25 @@ pub struct RecordChannels {
 }
 
 impl RecordChannels {
-    /// The channels of a dataset, in its units; a file that does not say a unit is taken to have the dataset's.
+    /// The channels of a dataset, in its units.
     pub fn of_dataset(dataset: &Dataset) -> Self {
-        let rule = |channel: &Channel| ChannelRule {
-            unit: channel.unit.clone(),
-            unit_in_files: Some(channel.unit.clone()),
-            ..ChannelRule::named(channel.name.clone())
-        };
+        let rule =
+            |channel: &Channel| ChannelRule { unit: channel.unit.clone(), ..ChannelRule::named(channel.name.clone()) };
         Self {
             inputs: dataset.inputs().iter().map(rule).collect(),
             outputs: dataset.outputs().iter().map(rule).collect(),
             said: BTreeMap::new(),
             resampling: ResamplingWish { band_end: Some(dataset.band().max()), ..ResamplingWish::default() },
         }
+    }
+
+    /// The same for records that the dataset itself names: these are in its units where their files say none, times their remedies.
+    #[must_use]
+    pub fn of_named_records(mut self) -> Self {
+        for rule in self.inputs.iter_mut().chain(&mut self.outputs) {
+            rule.unit_in_files = Some(rule.unit.clone());
+        }
+        self
     }
 
     /// Gives channels without a unit that of the column that this layout takes for them, so that further records are converted.
@@ -459,9 +398,7 @@ impl RecordChannels {
                     Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
                     _ => of_file(),
                 };
-                let unit = unit.unwrap_or_default();
-                rule.unit_in_files = Some(unit.clone()).filter(|unit| !unit.is_empty());
-                rule.unit = unit;
+                rule.unit = unit.unwrap_or_default();
             }
         }
     }

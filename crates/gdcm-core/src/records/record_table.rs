@@ -43,6 +43,11 @@ impl RecordColumn {
         self.name.strip_prefix(topic).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&self.name)
     }
 
+    /// The unit that the file says, where it does.
+    pub fn said_unit(&self) -> Option<&str> {
+        self.unit.as_deref().filter(|unit| !unit.trim().is_empty())
+    }
+
     /// Least and greatest of the samples that are numbers; none where there are none.
     pub fn range(&self) -> Option<(f64, f64)> {
         let finite = self.values.iter().copied().filter(|value| value.is_finite());

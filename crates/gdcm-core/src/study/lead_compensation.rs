@@ -170,7 +170,7 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
 /// What leads do and what has to be asked before them; of a study without leads, whether they would help.
 pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let caution = |text: String| Remark::new(RemarkKind::Caution, text);
-    let mut remarks: Vec<Remark> = common_lead(result).map(caution).into_iter().collect();
+    let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
         remarks.extend(achieved(study, result));
         remarks.extend(first_order_words(study, result).map(caution));
@@ -189,19 +189,20 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
 }
 
 /// That all held responses want about the same lead, and what to check first.
-fn common_lead(result: &ConditionAnalysis) -> Option<String> {
+fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let held = result.held().marked();
     let mut wanted_s: Vec<f64> = held.filter_map(|pair| result.comparison.delta.band_delay_s[pair]).collect();
     let (least, most) = wanted_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
     let middle = crate::response::median(&mut wanted_s);
     let is_common = wanted_s.len() > 1 && most < 0.0 && most - least <= 0.5 * middle.abs() && -middle >= NOTHING_S;
     is_common.then(|| {
-        format!(
-            "All held responses want about {} ms of lead: check first the time alignment of the records, the simulation's \
+        let lead_ms = telling(-s_to_ms(middle), 0);
+        let text = format!(
+            "All held responses want about {lead_ms} ms of lead: check first the time alignment of the records, the simulation's \
              integration and sampling delay, then servo and sensor models; a common lag is better taken out where it arises than \
-             corrected.",
-            telling(-s_to_ms(middle), 0)
-        )
+             corrected."
+        );
+        Remark::new(RemarkKind::Caution, text).repeated(Repeated::CommonLead(lead_ms))
     })
 }
 

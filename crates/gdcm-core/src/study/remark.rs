@@ -40,6 +40,8 @@ pub struct Remark {
 pub enum Repeated {
     /// Held responses need lead, by how much \[ms\].
     NeedsLead(Vec<(Pair, String)>),
+    /// All held responses need about the same lead \[ms\].
+    CommonLead(String),
     /// Held responses are farther from flight than without a correction.
     Farther(Vec<Pair>),
     /// What the mean J of the held responses is without leads, and would be with them.

@@ -108,12 +108,11 @@ pub struct Study {
     /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
     /// them.
     pub variants: Vec<Arc<Variant>>,
-    /// Models taken in place of those of the dataset's file; `dataset` has them.
-    /// The channels whose models are turned.
+    /// The channels whose models are turned: in `dataset` they are turned already.
     pub signs: Signs,
     /// What requirements are asked with. No correction depends on it.
     pub requirements: Arc<RequirementSettings>,
-    /// The dataset of the file, where models are taken or turned.
+    /// Models taken in place of those of the dataset's file, with that dataset, where models are taken or turned; `dataset` has them.
     pub(super) taken: Option<Taken>,
 }
 

@@ -14,6 +14,7 @@ use gdcm_core::dataset::Dataset;
 use super::file_error::FileError;
 use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
+use super::variables::ReadingBudget;
 use crate::file_error::ContentError;
 use gdcm_core::message_text::{sanitized, sanitized_path};
 
@@ -93,14 +94,20 @@ impl LoadedDataset {
 
 /// Loads a dataset from a file, packed by gzip or not; whole, or not at all.
 pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
-    dataset_from(&Source::read(path)?, DatasetOrigin::File(path.to_owned()))
+    load_dataset_within(path, &ReadingBudget::default())
+}
+
+/// The same within a budget that somebody may end.
+pub fn load_dataset_within(path: &Path, budget: &ReadingBudget<'_>) -> Result<LoadedDataset, FileError> {
+    dataset_from(&Source::read(path, budget)?, DatasetOrigin::File(path.to_owned()), budget)
 }
 
 /// Everything that is wrong in a dataset's file, each with its place; nothing where it can be loaded. Text that cannot be read at all
 /// is an error.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
-    let source = Source::read(path)?;
-    let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path)?;
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
     FORMAT.check_read(&text.format, text.version, path)?;
     let (draft, _) = text.into_draft().map_err(|error| FileError::content_of(path, error, source.text()))?;
     let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
@@ -109,7 +116,8 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
 
 /// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
-    dataset_from(&Source::of(bytes, &origin.path())?, origin)
+    let budget = ReadingBudget::default();
+    dataset_from(&Source::of(bytes, &origin.path(), &budget)?, origin, &budget)
 }
 
 /// The example dataset inside the program.
@@ -119,7 +127,7 @@ pub fn embedded_example() -> Result<LoadedDataset, FileError> {
 
 /// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path())?;
+    let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path(), &ReadingBudget::default())?;
     let path = directory.join(EXAMPLE_NAME);
     let mut outputs = OutputSet::new(existing, Vec::new());
     outputs.check(&[&path])?;
@@ -153,9 +161,13 @@ pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> R
 }
 
 /// The dataset that a source holds.
-pub(super) fn dataset_from(source: &Source<'_>, origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
+pub(super) fn dataset_from(
+    source: &Source<'_>,
+    origin: DatasetOrigin,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
     let path = origin.path();
-    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path)?;
+    let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
     FORMAT.check_read(&text.format, text.version, &path)?;
     let (draft, misplaced) = text.into_draft().map_err(|error| FileError::content_of(&path, error, source.text()))?;
     cautions.extend(misplaced);

@@ -172,7 +172,7 @@ impl Flight {
                 "a blackbox of data version \"{}\", or of fields of a later one",
                 &version.chars().take(9).collect::<String>()
             );
-            let remedy = "save it as CSV: blackbox_decode x.bbl".to_owned();
+            let remedy = "save it as CSV: blackbox_decode \"{file}\"".to_owned();
             return Err(VariableFault::Unsupported { variable: name.to_owned(), what, remedy });
         };
         let time = fields.names.iter().position(|field| field == "time");

@@ -103,7 +103,7 @@ fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
     if unknown.into_iter().any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0) {
         let what = "a ULog with parts of a later version".to_owned();
-        let remedy = "save its topics as CSV: ulog2csv x.ulg".to_owned();
+        let remedy = "save its topics as CSV: ulog2csv \"{file}\"".to_owned();
         return Err(VariableFault::Unsupported { variable: String::new(), what, remedy });
     }
     let offsets = (0..3).filter_map(|index| array(flags, 16 + 8 * index).map(u64::from_le_bytes));

@@ -10,6 +10,8 @@
 mod record_columns;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use gdcm_core::assembly::standard_patterns;
 use gdcm_core::dataset::ConditionRecord;
@@ -38,15 +40,23 @@ pub struct FoundRecords {
     pub ignored: Vec<String>,
     /// Number of files that were read.
     pub files: usize,
+    /// The files asked for by name that could not be read, or not all that is in them.
+    pub unread: Vec<PathBuf>,
 }
 
 /// The records of files and folders, folders with all that is in them. A file that cannot be read is a fault, and the rest is read;
 /// where only one was asked for, it is an error.
 pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<FoundRecords, FileError> {
-    let mut found = FoundRecords::default();
-    let (files, faults) = import(paths, progress, |file, budget| found.take(file, budget))?;
+    let (mut found, mut whole) = (FoundRecords::default(), Vec::new());
+    let (files, faults) = import(paths, progress, |file, budget| {
+        let (path, records, faults) = (file.path.to_owned(), found.tables.len(), found.faults.len());
+        found.take(file, budget)?;
+        whole.extend((found.tables.len() > records && found.faults.len() == faults).then_some(path));
+        Ok(())
+    })?;
     found.faults.extend(faults);
-    Ok(FoundRecords { files, ..found })
+    let unread = paths.iter().filter(|path| !path.is_dir() && !whole.contains(path)).cloned().collect();
+    Ok(FoundRecords { files, unread, ..found })
 }
 
 /// The records in the bytes of a file of this name, within a budget.
@@ -56,18 +66,22 @@ pub fn records_of_bytes(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) ->
     Ok(found)
 }
 
-/// Records of a file again, which is read once: those that a dataset calls by these variables; none is the only one.
+/// Records of a file again, which is read once and within a budget: those that a dataset calls by these variables; none is the only
+/// one.
 ///
 /// # Errors
 /// Those of reading; of a record that the file does not hold [`FileError::NoRecord`].
-pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
+pub fn load_records(
+    path: &Path,
+    variables: &[Option<&str>],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let budget = ReadingBudget::new(MOST_MEMORY);
     let mut found = FoundRecords::default();
     if path.is_dir() {
-        import(&[path.to_owned()], &Unheard, |file, budget| found.take(file, budget))?;
+        import(&[path.to_owned()], &Stopped(budget.stop()), |file, budget| found.take(file, budget))?;
     } else {
-        found.take(import_file(path, &name, &budget)?, &budget)?;
+        found.take(import_file(path, &name, budget)?, budget)?;
     }
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
@@ -79,11 +93,15 @@ pub fn load_records(path: &Path, variables: &[Option<&str>]) -> Result<Vec<Resul
     Ok(variables.iter().map(record).collect())
 }
 
-/// Reads without telling how far it is.
-struct Unheard;
+/// Whoever stops one reader stops that of a folder too.
+struct Stopped<'s>(&'s Arc<AtomicBool>);
 
-impl FolderProgress for Unheard {
+impl FolderProgress for Stopped<'_> {
     fn reading(&self, _: usize, _: usize, _: &str) {}
+
+    fn stop(&self) -> Arc<AtomicBool> {
+        Arc::clone(self.0)
+    }
 }
 
 impl FoundRecords {
@@ -111,7 +129,10 @@ impl FoundRecords {
                         let (path, sha256) = (Path::new(&inner), sha256.clone());
                         found.take(ImportedFile { path, name: &inner, sha256, contents }, budget)
                     });
-                    self.faults.extend(taken.err().map(|error| error.to_string()));
+                    match taken {
+                        Err(stopped) if stopped.is_stopped() => return Err(stopped),
+                        taken => self.faults.extend(taken.err().map(|error| error.to_string())),
+                    }
                     self.faults.append(&mut found.faults);
                     self.ignored.append(&mut found.ignored);
                     // A file in the archive is what a variable is in others.
@@ -270,7 +291,7 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
         return Ok(Vec::new());
     }
     let patterns = standard_patterns();
-    let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::new(MOST_MEMORY))?;
+    let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::default())?;
     let is_of = |table: &RecordTable| RecordGuess::of(&table.name, &patterns).condition == Some(condition);
     Ok(found.tables.into_iter().filter(is_of).collect())
 }

@@ -134,7 +134,7 @@ fn files_in_an_archive_are_records_of_it() {
 #[test]
 fn records_are_found_again_by_what_the_dataset_calls_them() {
     let load = |name: &str, variables: &[Option<&str>]| {
-        load_records(Path::new(&format!("{FOLDER}{name}")), variables).unwrap()
+        load_records(Path::new(&format!("{FOLDER}{name}")), variables, &ReadingBudget::default()).unwrap()
     };
     let of_runs = load("runs.csv", &[Some("run 5"), Some("run 6")]);
     assert_eq!(of_runs[0].as_ref().unwrap(), &read("runs.csv").tables[1]);
@@ -369,14 +369,17 @@ fn a_table_for_each_topic_in_an_archive_is_one_record() {
     std::fs::write(folder.path().join("notes.log"), "it went well").unwrap();
     std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
     std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
-    let found = read_records(&[folder.path().to_owned()], &Unheard).unwrap();
+    let found = read_records(&[folder.path().to_owned()], &Stopped(&Arc::default())).unwrap();
     let tables = with_topics_joined(found.tables, &sides(&["M"], &["q"]), &TimeWish::default());
     assert_eq!((tables.len(), found.faults), (1, Vec::new()), "other programs' logs are passed over");
     let (record, _) = LaidOutRecord::proposed(tables[0].clone(), &sides(&["M"], &["q"]), &TimeWish::default());
     let first = record.flight.unwrap();
     assert!(record.problems.is_empty() && first.time_s.len() > 900);
     // A dataset names the folder and what its tables make together; they are found so again.
-    let again = load_records(folder.path(), &[Some(RecordTable::TOPICS)]).unwrap().remove(0).unwrap();
+    let again = load_records(folder.path(), &[Some(RecordTable::TOPICS)], &ReadingBudget::default())
+        .unwrap()
+        .remove(0)
+        .unwrap();
     assert_eq!(again.columns, tables[0].columns);
 }
 
@@ -386,4 +389,30 @@ fn a_first_line_that_numbers_the_columns_is_no_sample() {
     let found = records_of_bytes(format!("1,2,3\n{rows}").as_bytes(), "n.csv", &ReadingBudget::new(1 << 20)).unwrap();
     assert_eq!((found.tables[0].rows(), found.tables[0].columns[2].values[1]), (60, 2.0));
     assert!(found.tables[0].notes.iter().any(|note| note.contains("numbers the columns")));
+}
+
+#[test]
+fn fdata_of_sidpac_is_read_with_the_names_of_its_columns() {
+    // SIDPAC keeps flight data in the columns of fdata, and their names with units, one a row, in varlab.
+    let rows = 80;
+    let column = |of: fn(f64) -> f64| (0..rows).map(move |row| of(f64::from(row)));
+    let values: Vec<f64> = column(|k| 0.02 * k)
+        .chain(column(|k| 2.0 + (0.1 * k).sin()))
+        .chain(column(|k| 3.0 - (0.1 * k).cos()))
+        .chain(column(|k| 5.0 * (0.2 * k).sin()))
+        .collect();
+    let labels = ["time (sec)", "lon (deg)    ", "q (deg/s)", "az (g's)"];
+    let texts = labels.map(|label| format!("{label:<13}")).into();
+    let variables = [
+        Variable { name: "fdata".into(), value: Value::Array(Array::matrix(rows as usize, 4, values.clone())) },
+        Variable { name: "varlab".into(), value: Value::Text(TextArray { shape: vec![4, 1], texts }) },
+    ];
+    let bytes = crate::mat::write(&variables).unwrap();
+    let found = records_of_bytes(&bytes, "flight.mat", &ReadingBudget::default()).unwrap();
+    let [table] = found.tables.as_slice() else { panic!("one record: {found:?}") };
+    let columns: Vec<(&str, Option<&str>)> =
+        table.columns.iter().map(|column| (column.name.as_str(), column.unit.as_deref())).collect();
+    assert_eq!(columns, [("time", Some("sec")), ("lon", Some("deg")), ("q", Some("deg/s")), ("az", Some("g's"))]);
+    assert!(table.named && found.faults.is_empty(), "{found:?}");
+    assert_eq!(table.columns[3].values, values[3 * rows as usize..], "column by column, not sample by sample");
 }

@@ -1,11 +1,12 @@
 //! Files that are made to harm: no more memory and work than is allowed, one sentence with the limit, an end where it is asked for.
 
+use std::cell::Cell;
 use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{FileError, FolderProgress, load_dataset, models_of_bytes, read_models, records_of_bytes};
+use gdcm_files::{FileError, FolderProgress, load_any, load_dataset, models_of_bytes, read_models, records_of_bytes};
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;
@@ -104,6 +105,85 @@ fn every_reader_stops_when_it_is_asked_to() {
             assert!(found.iter().all(Option::is_some), "{name}, after {most} bytes");
         }
     }
+}
+
+/// Logs of ArduPilot: what its messages are, and so many of one.
+fn dataflash(messages: u64) -> Vec<u8> {
+    let padded = |text: &str, length: usize| [text.as_bytes(), &vec![0; length - text.len()]].concat();
+    let format = |kind: u8, length: u8, name: &str, letters: &str, names: &str| {
+        [vec![0xa3, 0x95, 128, kind, length], padded(name, 4), padded(letters, 16), padded(names, 64)].concat()
+    };
+    let mut bytes = format(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
+    bytes.extend(format(140, 19, "RATE", "Qff", "TimeUS,R,ROut"));
+    for at in 0..messages {
+        let value = (at as f32 / 50.0).sin().to_le_bytes();
+        bytes.extend([&[0xa3, 0x95, 140][..], &(2500 * at).to_le_bytes(), &value, &value].concat());
+    }
+    bytes
+}
+
+#[test]
+fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
+    let data = crate::program_folder().join("tests/data");
+    let of = |name: &str| (name.rsplit('/').next().unwrap().to_owned(), std::fs::read(data.join(name)).unwrap());
+    let mut files: Vec<(String, Vec<u8>)> = [
+        "mat/scipy-4.mat",
+        "mat/scipy-5.mat",
+        "mat/scipy-5-packed.mat",
+        "mat73/objects.mat",
+        "mat73/plain.h5",
+        "foreign/octave/kinds.txt",
+        "foreign/octave/kinds.bin",
+        "foreign/octave/kinds.h5.gz",
+        "npy/matrix_c.npy",
+        "npy/compressed.npz",
+        "logs/quadrotor.ulg",
+        "logs/two-flights.bbl",
+        "small-dataset.json",
+    ]
+    .map(of)
+    .into();
+    files.push(("rate.bin".to_owned(), dataflash(2000)));
+    files.push((
+        "records.zip".to_owned(),
+        std::fs::read(crate::program_folder().join("assets/example-records-3-and-10.zip")).unwrap(),
+    ));
+    type Reader = fn(&[u8], &str, &ReadingBudget<'_>) -> Result<(), FileError>;
+    let readers: [Reader; 2] = [
+        |bytes, name, budget| models_of_bytes(bytes, name, budget).map(drop),
+        |bytes, name, budget| records_of_bytes(bytes, name, budget).map(drop),
+    ];
+    for ((name, bytes), read) in files.iter().flat_map(|file| readers.map(|read| (file, read))) {
+        // How often the reader takes memory, and how often after the flag was set at one of these times.
+        let taken = |stopped_at: usize| {
+            let (stop, count) = (Arc::new(AtomicBool::new(false)), Cell::new(0));
+            let tell = |_| {
+                count.set(count.get() + 1);
+                stop.store(count.get() >= stopped_at, Ordering::Relaxed);
+            };
+            let budget = ReadingBudget::default().stopped_by(Arc::clone(&stop)).telling(&tell);
+            (read(bytes, name, &budget), count.get())
+        };
+        let (_, all) = taken(usize::MAX);
+        assert!(all > 0, "{name} is read without a budget");
+        for stopped_at in (1..all).step_by((all / 20).max(1)) {
+            let (outcome, count) = taken(stopped_at);
+            assert_eq!(count, stopped_at, "{name}: it takes memory after it was stopped");
+            let words = outcome.err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(words.ends_with("stopped"), "{name}, stopped at {stopped_at} of {all}: {words}");
+        }
+    }
+}
+
+#[test]
+fn a_dataset_and_its_study_are_read_within_a_budget_that_can_be_ended() {
+    let path = crate::program_folder().join("tests/data/small-dataset.json");
+    let stopped = ReadingBudget::default().stopped_by(Arc::new(true.into()));
+    assert!(load_any(&path, &stopped).is_err_and(|error| error.is_stopped()));
+    let small = load_any(&path, &ReadingBudget::new(1 << 10)).unwrap_err().to_string();
+    assert!(small.contains("would take more than 0 MiB of memory"), "{small}");
+    assert!(load_any(&path, &ReadingBudget::default().with_work(100)).is_err());
+    assert!(load_any(&path, &ReadingBudget::default()).is_ok());
 }
 
 struct Silent;

@@ -108,7 +108,10 @@ fn an_input_of_the_other_sign_is_the_input_and_the_physics_can_be_turned_in_its_
 fn a_unit_that_one_side_has_otherwise_is_named_with_its_factor() {
     for (channel, factor, units) in [
         (NZ, 1.0 / 9.806_65, "1/9.81: g and m/s²"),
+        (NZ, 0.1, "1/9.81: g and m/s²"),
+        (NZ, 1.0 / 32.174, "1/32.2: g and ft/s²"),
         (NZ, 1e-3, "1/1000: a unit and its thousandth"),
+        (Channel::Output(0), 180.0 / std::f64::consts::PI, "57.3: radians and degrees"),
         (COL, 100.0, "100: a fraction and percent"),
     ] {
         let mut study = scaled(BundleKind::Identified, channel, factor);

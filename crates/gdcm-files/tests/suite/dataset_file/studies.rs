@@ -181,7 +181,7 @@ fn a_study_of_the_embedded_example_has_no_path() {
     save_study(&study, &loaded, &path).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!((&text["dataset"]["path"], &text["dataset"]["name"]), (&Json::Null, &json!("embedded example")));
-    let Opened::Study(opened) = load_any(&path).unwrap() else { panic!("a study was saved") };
+    let Opened::Study(opened) = load_any(&path, &Default::default()).unwrap() else { panic!("a study was saved") };
     assert_eq!(opened.study, study);
 }
 
@@ -192,7 +192,10 @@ fn a_study_whose_dataset_is_gone_says_which() {
     fs::remove_file(desk.dataset()).unwrap();
     let message = open_study(&desk.study()).unwrap_err().to_string();
     assert!(message.contains("a.gdcm-study.json: the study's dataset cannot be opened: "), "{message}");
-    assert!(message.contains("small.json: there is no such file") && message.contains("--dataset FILE"), "{message}");
+    assert!(
+        message.contains("small.json: there is no such file") && message.contains("with --dataset and its path"),
+        "{message}"
+    );
 }
 
 /// What opening the study says is different, a line each.
@@ -266,7 +269,7 @@ fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be(
     let elsewhere = desk.directory.path().join("elsewhere.json");
     fs::rename(desk.dataset(), &elsewhere).unwrap();
     assert!(matches!(open_study(&desk.study()), Err(FileError::StudyDataset { .. })));
-    assert_eq!(open_study_of(&desk.study(), &elsewhere).unwrap().differences, []);
+    assert_eq!(open_study_of(&desk.study(), &elsewhere, &Default::default()).unwrap().differences, []);
     fs::rename(&elsewhere, desk.study().with_file_name("small.json")).unwrap();
     assert_eq!(open_study(&desk.study()).unwrap().differences, []);
 }
@@ -312,7 +315,7 @@ fn a_study_beside_its_dataset_names_it_plainly() {
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &beside).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("small.json"));
-    assert!(matches!(load_any(Path::new(&beside)).unwrap(), Opened::Study(_)));
+    assert!(matches!(load_any(Path::new(&beside), &Default::default()).unwrap(), Opened::Study(_)));
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn neither_a_dataset_nor_a_study_is_refused_as_such() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("file.json");
     std::fs::write(&path, r#"{"format": "gdcm-corrections", "version": 1}"#).unwrap();
-    let message = load_any(&path).unwrap_err().to_string();
+    let message = load_any(&path, &Default::default()).unwrap_err().to_string();
     assert!(
         message.ends_with("expected \"format\": \"gdcm-dataset\" or \"gdcm-study\", found \"gdcm-corrections\""),
         "{message}"

@@ -16,6 +16,7 @@ mod matlab;
 #[path = "../../../src/mat/sample_tests.rs"]
 #[expect(dead_code, reason = "the readers' own tests use the rest")]
 mod matlab_files;
+mod octave;
 mod texts;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -27,11 +28,12 @@ use std::time::{Duration, Instant};
 use gdcm_core::assembly::{FoundModel, RowRule, Rules};
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{BundleKind, ModelId};
+use gdcm_core::requirements::ToleranceTable;
 use gdcm_core::study::{Edit, SignRole, Study};
 use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{
-    DatasetOrigin, Existing, OutputSet, add_rules, load_dataset, load_dataset_bytes, load_rules, models_of_bytes,
-    open_study_of, records_of_bytes, save_study,
+    DatasetOrigin, Existing, OutputSet, add_rules, add_tolerances, load_dataset, load_dataset_bytes, load_rules,
+    load_tolerances, lost_studies, models_of_bytes, open_study_of, read_levels, records_of_bytes, save_study,
 };
 
 use crate::made_up::tries;
@@ -176,6 +178,9 @@ const CLASSES: [&str; 16] = [
 /// What a study and rules are called.
 const STUDY: &str = "small.gdcm-study.json";
 const RULES: &str = "small.gdcm-rules.json";
+/// What a table of tolerances and boundaries of levels are called.
+const TOLERANCES: &str = "small-tolerances.json";
+const LEVELS: &str = "small-levels.json";
 
 /// A file: its name, and its bytes.
 type NamedBytes = (String, Vec<u8>);
@@ -183,7 +188,19 @@ type NamedBytes = (String, Vec<u8>);
 /// Files of the tests' data in these folders.
 static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
     let root = crate::program_folder().join("tests/data");
-    let folders = ["mat", "mat73", "npy", "records", "logs", "edges", "hostile", ""];
+    let folders = [
+        "mat",
+        "mat73",
+        "npy",
+        "records",
+        "logs",
+        "edges",
+        "hostile",
+        "foreign/octave",
+        "foreign/numpy",
+        "foreign/text",
+        "",
+    ];
     let mut paths: Vec<PathBuf> = folders
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
@@ -203,10 +220,10 @@ fn small_dataset() -> PathBuf {
     crate::program_folder().join("tests/data/small-dataset.json")
 }
 
-/// A study with a representative, a sign and a variant, and rules that say something of a model.
-fn own_files() -> [NamedBytes; 2] {
+/// A study with a representative, a sign and a variant, rules that say something of a model, a table of tolerances, and levels.
+fn own_files() -> [NamedBytes; 4] {
     let folder = tempfile::tempdir().unwrap();
-    let [study_path, rules_path] = [STUDY, RULES].map(|name| folder.path().join(name));
+    let [study_path, rules_path, tolerances_path] = [STUDY, RULES, TOLERANCES].map(|name| folder.path().join(name));
     let loaded = load_dataset(&small_dataset()).unwrap();
     let mut study = Study::new(Arc::clone(&loaded.dataset));
     let condition = study.dataset.conditions()[0].id();
@@ -221,16 +238,33 @@ fn own_files() -> [NamedBytes; 2] {
     let rules = Rules { name: "rules".to_owned(), rows: [("a/b.mat".to_owned(), row)].into(), ..Rules::default() };
     let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
     add_rules(&rules, &rules_path, &mut outputs).unwrap();
+    add_tolerances(&ToleranceTable::default(), &tolerances_path, &mut outputs).unwrap();
     outputs.persist().unwrap();
-    [(STUDY.to_owned(), std::fs::read(study_path).unwrap()), (RULES.to_owned(), std::fs::read(rules_path).unwrap())]
+    let levels = br#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}, {"name": "Level 2", "axis": "Q", "points": [[1, 0.1], [3, 0.4]]}]"#;
+    let of = |name: &str, path: &Path| (name.to_owned(), std::fs::read(path).unwrap());
+    [
+        of(STUDY, &study_path),
+        of(RULES, &rules_path),
+        of(TOLERANCES, &tolerances_path),
+        (LEVELS.to_owned(), levels.to_vec()),
+    ]
 }
 
-/// Opens a study or rules from a file of their own, for they are read from files alone; gives whether that went well.
+/// Opens what is read from files alone from a file of its own; gives whether that went well. A study is what a window lost too.
 fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).map_err(|error| error.to_string())?;
-    let error = if name == STUDY { open_study_of(&path, &small_dataset()).err() } else { load_rules(&path).err() };
+    let error = match name {
+        STUDY => {
+            std::fs::write(folder.path().join("small.lock"), "").map_err(|error| error.to_string())?;
+            lost_studies(folder.path());
+            open_study_of(&path, &small_dataset(), &Default::default()).err()
+        }
+        TOLERANCES => load_tolerances(&path).err(),
+        LEVELS => read_levels(&path).err(),
+        _ => load_rules(&path).err(),
+    };
     let words = error.map(|error| error.to_string().replace(&folder.path().display().to_string(), ""));
     let read = words.is_none();
     check_said(name, words.map(|words| words.trim_start_matches('/').to_owned()))?;
@@ -270,10 +304,11 @@ fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
 
 /// The file of an execution: one of the corpus, damaged, or one of a grammar, damaged or not.
 fn file_of(dice: &mut Dice) -> NamedBytes {
-    let grammars: [fn(&mut Dice) -> NamedBytes; 9] = [
+    let grammars: [fn(&mut Dice) -> NamedBytes; 10] = [
         matlab::file,
         matlab::file_of_objects,
         hdf5::file,
+        octave::file,
         logs::file,
         texts::json,
         texts::program_json,
@@ -297,9 +332,9 @@ struct Tally {
     failures: Mutex<Vec<String>>,
 }
 
-/// Reads a file as models, as records, and as a dataset where it is JSON, or as a study or rules; whether anything was found.
+/// Reads a file as models, as records, and as a dataset where it is JSON, or as what it is called; whether anything was found.
 fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
-    if [STUDY, RULES].contains(&name) {
+    if [STUDY, RULES, TOLERANCES, LEVELS].contains(&name) {
         return opened(name, bytes);
     }
     let budget = || ReadingBudget::new(MOST_MEMORY).with_work(MOST_WORK);

@@ -24,7 +24,7 @@ static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
 /// What the records of a condition give, held out what its name says.
 fn identified(id: ConditionId) -> Identification {
     let dataset = &EXAMPLE.dataset;
-    let channels = RecordChannels::of_dataset(dataset);
+    let channels = RecordChannels::of_dataset(dataset).of_named_records();
     let is_of_condition =
         |record: &LaidOutRecord| record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty();
     let laid_out = |table: &RecordTable| LaidOutRecord::proposed(table.clone(), &channels, &TimeWish::default()).0;

@@ -258,7 +258,7 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_files::figure::{Mark, record_history_figure};
     let dataset = crate::EXAMPLE.dataset.clone();
     let analysis = Engine::default().analyze(&Study::new(dataset.clone()), &Unobserved).unwrap();
-    let channels = gdcm_core::records::RecordChannels::of_dataset(&dataset);
+    let channels = gdcm_core::records::RecordChannels::of_dataset(&dataset).of_named_records();
     let table = gdcm_files::example_records(3).unwrap().remove(0);
     let record = gdcm_core::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());

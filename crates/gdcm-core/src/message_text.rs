@@ -37,13 +37,19 @@ pub fn quoted(text: &str) -> String {
 
 /// A message that is no longer than a reader can bear, nor any word in it: what is left out of either stands in its middle.
 pub fn shortened_message(text: &str) -> String {
-    /// Longer than the path of most files, and what is kept of each end.
-    const WORD: [usize; 2] = [400, 40];
     /// Longer than every sentence of the program with the names of sixty columns in it, and what is kept of each end.
     const MESSAGE: [usize; 2] = [2000, 900];
     let words: Vec<String> = text.split(' ').map(|word| without_middle(word, WORD)).collect();
     without_middle(&words.join(" "), MESSAGE)
 }
+
+/// A name in a message, without its middle where it is longer than the path of most files.
+pub fn shortened_name(text: &str) -> String {
+    without_middle(text, WORD)
+}
+
+/// Longer than the path of most files, and what is kept of each end.
+const WORD: [usize; 2] = [400, 40];
 
 /// A text of more than so many letters without its middle: so many of either end are kept.
 fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {

@@ -2,6 +2,8 @@
 //!
 //! Every reader of such files (MATLAB's, NumPy's, text) gives these values and knows nothing of models.
 
+use gdcm_core::message_text::shortened_name;
+
 pub use crate::reading_budget::ReadingBudget;
 
 // Numbers in an array of any number of dimensions.
@@ -242,5 +244,5 @@ impl VariableFault {
 }
 
 fn at(variable: &str) -> String {
-    if variable.is_empty() { String::new() } else { format!("variable {variable}: ") }
+    if variable.is_empty() { String::new() } else { format!("variable {}: ", shortened_name(variable)) }
 }

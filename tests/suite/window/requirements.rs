@@ -331,7 +331,7 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
             output["unit"] = serde_json::json!("N");
         }
     });
-    let opened = load_any(&desk.path("forces.json")).unwrap();
+    let opened = load_any(&desk.path("forces.json"), &Default::default()).unwrap();
     let mut window = window_with(opened, Setup::default());
     show(&mut window, View::Requirements);
     wait_until(&mut window, "the requirements", |window| state(window).requirements().is_some());

@@ -54,7 +54,8 @@ const TRAPS: [Trap; 11] = [
     Trap {
         name: "gusts fed back",
         code: "feedback",
-        follows: &["not-identified", "unstable"],
+        // What gusts move is noise: the sweep stands out of it over a narrower band.
+        follows: &["not-identified", "unstable", "band-narrowed"],
         flown: |seed| {
             let gusty = |seed| Flown { gust: 2.0, amp: 0.4, noise: 0.02, feedback: 0.15, ..calm(seed) };
             (flights(3, seed, gusty), options())

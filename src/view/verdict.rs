@@ -236,9 +236,8 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
 fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
     let words = |cost: CouplingCost| {
         let others = cost.without.others.zip(cost.with.others);
-        others.map_or(String::new(), |(without, with)| {
-            format!("J off the axis {} → {}", telling(without, 0), telling(with, 0))
-        })
+        others
+            .map_or(String::new(), |(without, with)| format!("off-axis J {}→{}", telling(without, 0), telling(with, 0)))
     };
     let look = || Step::new("Look first", Command::ShowView(View::Couplings));
     if let Some((assessment, cost)) = offered_couplings(state) {

@@ -221,7 +221,15 @@ pub struct ConditionCurves {
 
 /// Responses with couplings that were drawn last, with what they are of: computed from the others, they make no two curves different.
 #[derive(Debug, Default)]
-struct CoupledCurves(Mutex<Vec<(Arc<FittedCouplings>, usize, Arc<FrequencyResponse>)>>);
+struct CoupledCurves(Mutex<Vec<CoupledCurve>>);
+
+/// The response of one physics model with couplings.
+#[derive(Debug)]
+struct CoupledCurve {
+    fitted: Arc<FittedCouplings>,
+    model: usize,
+    response: Arc<FrequencyResponse>,
+}
 
 impl Clone for CoupledCurves {
     fn clone(&self) -> Self {
@@ -247,13 +255,14 @@ impl ConditionCurves {
         const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else { return Arc::clone(&self.physics[model]) };
         let mut kept = self.coupled.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_of = |of: &&(Arc<FittedCouplings>, usize, _)| Arc::ptr_eq(&of.0, &coupled.fitted) && of.1 == model;
-        if let Some((.., response)) = kept.iter().find(is_of) {
-            return Arc::clone(response);
+        let is_of = |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
+        if let Some(of) = kept.iter().find(is_of) {
+            return Arc::clone(&of.response);
         }
         let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
         kept.truncate(KEPT - 1);
-        kept.insert(0, (Arc::clone(&coupled.fitted), model, Arc::clone(&response)));
+        let fitted = Arc::clone(&coupled.fitted);
+        kept.insert(0, CoupledCurve { fitted, model, response: Arc::clone(&response) });
         response
     }
 

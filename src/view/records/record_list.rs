@@ -126,7 +126,7 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
             records.cautions().filter(|(rows, _)| rows.contains(&index)).map(|(_, note)| note.text).collect();
         if !of_it.is_empty() {
             let mark = ui.label(palette.small_warning("⚠"));
-            named(mark.on_hover_text(of_it.join("\n\n")), AccessRole::Label, &format!("Cautions of {name}"));
+            named(mark.on_hover_text(of_it.join("\n\n")), AccessRole::Label, format!("Cautions of {name}"));
         }
     });
 }

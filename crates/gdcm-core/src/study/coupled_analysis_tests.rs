@@ -110,8 +110,8 @@ fn a_condition_held_out_does_not_enter_the_fit() {
     let result = analysis.condition(held_out).unwrap();
     assert_ne!(&*result.comparison, result.before_couplings(), "but it is coupled too");
     // Another identified model of it changes nothing of the fit.
-    let other = result.condition.bundle(BundleKind::Identified).iter().map(|model| &model.name);
-    let other = other.filter(|name| *name != result.representative_name(BundleKind::Identified)).next_back().unwrap();
+    let mut other = result.condition.bundle(BundleKind::Identified).iter().map(|model| &model.name);
+    let other = other.rfind(|name| *name != result.representative_name(BundleKind::Identified)).unwrap();
     study.apply(&Edit::Pin(ModelId::new(held_out, BundleKind::Identified, other))).unwrap();
     let pinned = analyze(&mut engine, &study);
     assert!(Arc::ptr_eq(pinned.fitted_couplings().unwrap(), couplings));

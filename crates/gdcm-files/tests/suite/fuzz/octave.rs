@@ -77,7 +77,8 @@ fn binary_value(dice: &mut Dice, bytes: &mut Vec<u8>, deeper: usize) {
         bytes.extend(word.as_bytes());
     };
     let kind = *dice.of_list(&TYPES);
-    word(bytes, *dice.of_list(&NAMES));
+    let name: &&str = dice.of_list(&NAMES);
+    word(bytes, name);
     word(bytes, "");
     bytes.extend([0, 0xff]);
     word(bytes, kind);
@@ -92,7 +93,8 @@ fn binary_value(dice: &mut Dice, bytes: &mut Vec<u8>, deeper: usize) {
     match kind {
         "cell" | "scalar struct" | "object" if deeper > 0 => {
             if kind == "object" {
-                word(bytes, *dice.of_list(&CLASSES));
+                let class: &&str = dice.of_list(&CLASSES);
+                word(bytes, class);
             }
             put(bytes, rows);
             (0..dice.below(4)).for_each(|_| binary_value(dice, bytes, deeper - 1));

@@ -76,7 +76,8 @@ const TRAPS: [Trap; 11] = [
     Trap {
         name: "clipped",
         code: "clipped",
-        follows: &["order-limit", "points"],
+        // The response of what is clipped is bent, and no linear model is.
+        follows: &["order-limit", "points", "unstable"],
         flown: |seed| {
             let clipped = |record: &mut FlightRecord| {
                 let limit = 1.5 * deviation(record);
@@ -132,7 +133,8 @@ const TRAPS: [Trap; 11] = [
     Trap {
         name: "short",
         code: "short",
-        follows: &[],
+        // Of few lines a record is now and then unlike the others by chance: 4 of 30.
+        follows: &["reweighed"],
         // 25 s are four periods of 1 rad/s.
         flown: |seed| (flights(3, seed, |seed| Flown { seconds: 25.0, ..calm(seed) }), options()),
     },
@@ -157,14 +159,17 @@ fn assert_cautions_over(seeds: Range<u64>) {
     assert!(falsely("feedback") <= count / 10 && falsely("points") <= count / 30, "{good:?}");
     let others = good.iter().flatten().filter(|code| !code.starts_with("feedback") && **code != "points");
     assert_eq!(others.count(), 0, "{good:?}");
+    let mut wrong = Vec::new();
     for Trap { name, code, follows, flown } in &TRAPS {
         let all: Vec<BTreeSet<&str>> = seeds.clone().map(|seed| said(&flown(seed))).collect();
         let missed = all.iter().filter(|said| !said.iter().any(|of| of.starts_with(code))).count();
-        assert!(missed <= count / 10, "{name}: {all:?}");
         let is_other = |of: &&&str| !of.starts_with(code) && !follows.contains(of);
         let others = all.iter().filter(|said| said.iter().any(|of| is_other(&of))).count();
-        assert!(others <= count / 10, "{name}: {all:?}");
+        if missed > count / 10 || others > count / 10 {
+            wrong.push(format!("{name}: missed {missed}, others {others} of {count}: {all:?}"));
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

@@ -505,7 +505,8 @@ fn frame<'a>(
     let count = names.len();
     let along = match panel.x.scale {
         Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
-        Scale::Linear | Scale::Degrees => values,
+        // Numbers of three digits beside one another take more room than lines above one another.
+        Scale::Linear | Scale::Degrees => Ticks::Decimal(TICK_GAP),
     };
     let spacer = move |input: GridInput| match is_named {
         true => named_marks(&input, count, widest),

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use gdcm_core::assembly::{ChannelRule, NamePattern, RowRule, Rules, Signs, UnitRule, standard_patterns};
 use gdcm_core::dataset::Location;
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
+use gdcm_core::message_text::sanitized;
 use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +48,7 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
 fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
     let pattern = |(index, text): (usize, &String)| {
         NamePattern::new(text).map_err(|error| {
-            let fault = ContentFault::Word { expected: error.to_string(), found: text.clone() };
+            let fault = ContentFault::Word { expected: sanitized(&error.to_string()), found: text.clone() };
             ContentError::new(Location::entry(format!("patterns, entry {}", index + 1)), fault)
         })
     };

@@ -11,7 +11,7 @@ use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJo
 
 use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
-use crate::view::views::{judged_couplings_job, overlay_job};
+use crate::view::views::{are_couplings_judged, couplings_job, overlay_job};
 use crate::view::{Background, Need, State, View};
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
@@ -212,7 +212,7 @@ impl GdcmApp {
         let state = &self.state;
         let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
         let of_views = shown.flat_map(|view| (view.kind().needs)(state));
-        let judged = judged_couplings_job(state).map(Need::Couplings);
+        let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
         self.needs = of_views.chain(overlay_job(state).map(Need::Variant)).chain(judged).collect();
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));

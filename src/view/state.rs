@@ -7,8 +7,8 @@ use std::sync::Arc;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_core::study::{
     AcrossCurves, Analysis, AssessedCouplings, AssessmentTable, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModes, CouplingsJob, Difference, History, RecordHistory, RecordHistoryJob, Requirements, Study, Table,
-    TestAnswers, TimeHistories, Toggles, Uncertainty,
+    ConditionModes, Difference, History, RecordHistory, RecordHistoryJob, Requirements, Study, Table, TestAnswers,
+    TimeHistories, Toggles, Uncertainty,
 };
 use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_files::ExportFormat;
@@ -16,7 +16,7 @@ use gdcm_files::figure::ColumnWidth;
 
 use super::assembling::AssemblyState;
 use super::records::RecordsState;
-use super::views::{all_records, assessment_choice};
+use super::views::{all_records, assessed_correction, assessment_choice};
 use super::{Bar, Display, FirstResult, FormKind, PaletteForm, Results, View};
 
 /// How a message is meant.
@@ -258,11 +258,11 @@ impl State {
         (job.records == all_records(self)).then_some(found)
     }
 
-    /// What couplings do to the study as it is; those of older settings until new ones are there.
-    pub fn couplings(&self, job: &CouplingsJob) -> Option<&AssessedCouplings> {
+    /// What couplings do to the study, or would do; those of older settings until new ones are there.
+    pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
-        (of_this && known.couplings == job.couplings).then_some(assessed)
+        (of_this && known.couplings == assessed_correction(self)).then_some(assessed)
     }
 
     /// The responses of one model of each condition; those of older settings until new ones are there.

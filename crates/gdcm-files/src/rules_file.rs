@@ -205,5 +205,9 @@ mod tests {
             let error = load_rules(&path).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");
         }
+        // The library of regular expressions repeats the pattern letter by letter.
+        std::fs::write(&path, format!(r#"{start}"patterns": ["(?<cond\u007ftion>a)"]}}"#)).unwrap();
+        let error = load_rules(&path).unwrap_err().to_string();
+        assert!(error.contains("is no regular expression") && !error.contains(char::is_control), "{error:?}");
     }
 }

@@ -6,8 +6,7 @@ use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
 use gdcm_core::couplings::LEAST_CONDITIONS;
 use gdcm_core::dataset::Dataset;
 use gdcm_core::study::{
-    AssessedCouplings, CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection,
-    RemarkKind, Table, setting,
+    CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection, RemarkKind, Table, setting,
 };
 use gdcm_core::units::telling;
 use gdcm_files::figure::{Figure, FigureRequest};
@@ -45,48 +44,49 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
     }
 }
 
-/// What the couplings do that the study asks for; where it asks for none, what mixing and feedback would do.
-pub fn couplings_job(state: &State) -> CouplingsJob {
-    let couplings = match state.study.settings.couplings {
+/// The couplings that the study asks for; where it asks for none, mixing and feedback: those that are assessed.
+pub fn assessed_correction(state: &State) -> CouplingCorrection {
+    match state.study.settings.couplings {
         CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
         asked => asked,
-    };
-    CouplingsJob { study: state.study.clone(), couplings }
+    }
 }
 
-/// The job that finds out what couplings cost where they are used, and whether they are to be offered where they are not: once delays or
-/// leads do what a channel can, of three conditions or more.
-pub fn judged_couplings_job(state: &State) -> Option<CouplingsJob> {
+/// The job that finds out what they do, or would do.
+pub fn couplings_job(state: &State) -> CouplingsJob {
+    CouplingsJob { study: state.study.clone(), couplings: assessed_correction(state) }
+}
+
+/// Whether couplings are assessed whatever view is shown: where they are used, for what they cost; where they are not, once delays or leads
+/// do what a channel can, of three conditions or more, for they may be worth an offer.
+pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
-    let analysis = state.analysis().filter(|_| !state.results.is_behind())?;
-    if settings.couplings != CouplingCorrection::None {
-        return Some(couplings_job(state));
-    }
+    let Some(analysis) = state.analysis().filter(|_| !state.results.is_behind()) else { return false };
     let results = || analysis.conditions.values().flatten();
     let is_left = match settings.phase {
         PhaseCorrection::None => false,
         PhaseCorrection::Delay => results().all(|result| result.delays.matched),
         PhaseCorrection::Lead => true,
     };
-    (is_left && results().count() >= LEAST_CONDITIONS).then(|| couplings_job(state))
+    settings.couplings != CouplingCorrection::None || is_left && results().count() >= LEAST_CONDITIONS
 }
 
 /// What couplings would bring off the axis, where they are not used and that is worth it by J of conditions left out.
-pub fn offered_couplings(state: &State) -> Option<(Arc<CouplingsAssessment>, CouplingCost)> {
-    let job = judged_couplings_job(state).filter(|_| state.study.settings.couplings == CouplingCorrection::None)?;
-    let assessment = state.couplings(&job)?.as_ref().ok()?;
-    assessment.costs.left_out.filter(CouplingCost::is_worth_it).map(|cost| (Arc::clone(assessment), cost))
+pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
+    let is_used = state.study.settings.couplings != CouplingCorrection::None;
+    let assessment = state.couplings().filter(|_| !is_used && are_couplings_judged(state))?.as_ref().ok()?;
+    Some((assessment, assessment.costs.left_out.filter(CouplingCost::is_worth_it)?))
 }
 
 /// What the couplings that are used are worth and cost, once it is known.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
     let is_used = state.study.settings.couplings != CouplingCorrection::None;
-    state.couplings(&couplings_job(state)).filter(|_| is_used)?.as_ref().ok()
+    state.couplings().filter(|_| is_used)?.as_ref().ok()
 }
 
 /// Words and tables at the left, the loop and the poles at the right.
 pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
-    let found = state.couplings(&couplings_job(state)).cloned();
+    let found = state.couplings().cloned();
     let assessment = match found {
         Some(Ok(assessment)) => assessment,
         Some(Err(why)) => {
@@ -136,8 +136,7 @@ fn figure(state: &State) -> Option<Figure> {
 
 /// The assessment that the view shows.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
-    let assessed: &AssessedCouplings = state.couplings(&couplings_job(state))?;
-    assessed.as_ref().ok().cloned()
+    state.couplings()?.as_ref().ok().cloned()
 }
 
 /// Whether the couplings are used, and the click that uses them, or leaves them where they are not worth it.

@@ -21,17 +21,24 @@ fn every_control_has_a_label_of_its_own() {
     assert!(twice.is_empty(), "{twice:?}");
 }
 
-#[test]
+/// What the program says where there is no display.
 #[cfg(target_os = "linux")]
-fn without_a_display_one_line_names_the_headless_command() {
+fn without_a_display(arguments: &[&Path]) -> (Option<i32>, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env_remove("WAYLAND_SOCKET")
+        .args(arguments)
         .output()
         .unwrap();
-    let words = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1));
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_display_one_line_names_the_headless_command() {
+    let (status, words) = without_a_display(&[]);
+    assert_eq!(status, Some(1));
     assert_eq!(words.trim_end().lines().count(), 1, "{words}");
     assert!(words.contains("no display") && words.contains("gdcm analyze"), "{words}");
 }
@@ -42,15 +49,8 @@ fn without_a_display_a_file_that_is_wrong_is_told_on_the_terminal_with_its_own_s
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("broken.json");
     std::fs::write(&path, "{\"format\": ").unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_gdcm"))
-        .arg(&path)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .unwrap();
-    let words = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(2), "{words}");
+    let (status, words) = without_a_display(&[&path]);
+    assert_eq!(status, Some(2), "{words}");
     assert_eq!(words.matches("error: ").count(), 1, "{words}");
     assert!(words.contains("broken.json"), "{words}");
 }

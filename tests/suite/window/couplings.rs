@@ -4,7 +4,7 @@ use gdcm::view::Sheet;
 use gdcm::view::arrangement::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::cost_map::{MappedCost, cost_of};
-use gdcm::view::views::{couplings_job, offered_couplings};
+use gdcm::view::views::offered_couplings;
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{CouplingCorrection, Edit, PhaseCorrection, setting};
 use gdcm_files::figure::Mark;
@@ -16,7 +16,7 @@ use super::*;
 fn assessed(window: &mut Window) {
     wait_until(window, "what couplings do", |window| {
         let state = state(window);
-        state.couplings(&couplings_job(state)).is_some() && !state.results.background.is_busy()
+        state.couplings().is_some() && !state.results.background.is_busy()
     });
 }
 

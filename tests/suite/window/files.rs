@@ -202,12 +202,7 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
         "example.py",
         "the end of the name goes with the format"
     );
-    window.get_by_label("Path of the export").focus();
-    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    window.run_steps(2);
-    fill(&mut window, "Path of the export", &path);
-    click(&mut window, "Export file");
-    let notice = state(&window).notice.clone().expect("the export is reported");
+    let notice = exported(&mut window, &path);
     assert!(notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"), "{}", notice.text);
     assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction(airspeed_kt):"));
 

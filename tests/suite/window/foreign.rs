@@ -50,12 +50,7 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     let path = folder.path().join("corrected.mat");
     window.state_mut().dispatch(gdcm::view::Command::ShowForm(Some(gdcm::view::FormKind::ExportAs)));
     window.run_steps(2);
-    window.get_by_label("Path of the export").focus();
-    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    window.run_steps(2);
-    fill(&mut window, "Path of the export", &path);
-    click(&mut window, "Export file");
-    let notice = state(&window).notice.clone().expect("the export is reported");
+    let notice = exported(&mut window, &path);
     assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
     assert!(std::fs::metadata(&path).unwrap().len() > 10_000, "models of two conditions");
 }

@@ -45,7 +45,7 @@ use gdcm::executor::Pool;
 use gdcm::view::arrangement::View;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
-use gdcm::view::state::{NoticeKind, State};
+use gdcm::view::state::{Notice, NoticeKind, State};
 use gdcm::view::views::channel_plots;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
@@ -163,6 +163,16 @@ pub(crate) fn fill(window: &mut Window, field: &str, path: &Path) {
     window.run_steps(2);
     window.get_by_label(field).type_text(path.to_str().unwrap());
     window.run_steps(2);
+}
+
+/// Exports what the open form says to a file, and what is told of it.
+fn exported(window: &mut Window, path: &Path) -> Notice {
+    window.get_by_label("Path of the export").focus();
+    window.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    window.run_steps(2);
+    fill(window, "Path of the export", path);
+    click(window, "Export file");
+    state(window).notice.clone().expect("the export is reported")
 }
 
 fn open_by_path(window: &mut Window, path: &Path) {

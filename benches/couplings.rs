@@ -66,8 +66,12 @@ fn live_loop(criterion: &mut Criterion) {
     again("alpha dragged", &|study, turn| {
         study.apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)).expect("within its range");
     });
+    // The representative: with another one the fit is another.
+    let analysis = Engine::default().analyze(&study(), &Unobserved).expect("nobody stops it");
+    let representative =
+        analysis.condition(ConditionId(10)).expect("it has a result").representative_name(BundleKind::Physics);
     let rejected = |study: &mut Study, turn: f64| {
-        let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
+        let id = ModelId::new(ConditionId(10), BundleKind::Physics, representative);
         let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
         study.apply(&edit).expect("others are kept");
     };

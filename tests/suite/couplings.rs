@@ -100,6 +100,28 @@ fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
 }
 
 #[test]
+fn a_schedule_over_airspeed_and_altitude_has_its_couplings_beside_it() {
+    let desk = Desk::new();
+    let chosen = [&COUPLED[..], &["--second-variable", "altitude"]].concat();
+    desk.gdcm(&[&["analyze", "--out", "."], &chosen[..]].concat()).assert_done();
+    desk.gdcm(&[&["export", "--as", "m", "--out", "two.m"], &chosen[..]].concat()).assert_done();
+    let found = read_json(&desk.path("corrections.json"));
+    let condition = &found["conditions"][6];
+    let program = format!(
+        "[low, ~, ~, ~, ~, ~, m, k] = two({0}, 2000); [high, ~, ~, ~, ~, ~, n, l] = two({0}, 8000); \
+         printf('%.17g ', max(abs(low - high)(:)), isequal(m, n) && isequal(k, l), m', k');",
+        condition["airspeed_kt"]
+    );
+    let Some(values) = octave(&desk, &program) else { return };
+    assert!(values[0] > 1e-3 && values[1] == 1.0, "gains depend on the altitude, couplings do not: {values:?}");
+    let rows = [numbers(&condition["couplings"]["mixing"]), numbers(&found["couplings"]["feedback"])].concat();
+    let expected: Vec<f64> = rows.into_iter().flatten().collect();
+    assert_eq!(values.len(), 2 + expected.len());
+    // Seventeen digits of each coefficient.
+    assert!(values[2..].iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{values:?} {expected:?}");
+}
+
+#[test]
 fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     let desk = Desk::new();
     let ids: Vec<String> = crate::EXAMPLE.dataset.conditions().iter().map(|of| of.id().to_string()).collect();

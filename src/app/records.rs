@@ -92,8 +92,8 @@ impl GdcmApp {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
         let [_, end] = self.identified_band(condition);
         channels.resampling.band_end = Some(end);
-        if let Some((_, said)) = self.said_channels.as_ref().filter(|(of, _)| self.loaded.path() == Some(of)) {
-            let said: Vec<&ChannelRule> = said.inputs.iter().chain(&said.outputs).collect();
+        if let Some(made) = self.made_of_records() {
+            let said: Vec<&ChannelRule> = made.channels.inputs.iter().chain(&made.channels.outputs).collect();
             for rule in channels.inputs.iter_mut().chain(&mut channels.outputs) {
                 if let Some(said) = said.iter().find(|said| said.name == rule.name) {
                     rule.aliases.clone_from(&said.aliases);
@@ -102,6 +102,11 @@ impl GdcmApp {
             }
         }
         channels
+    }
+
+    /// How the dataset shown was made of records, where it was.
+    fn made_of_records(&self) -> Option<&DatasetOfRecords> {
+        self.made_of_records.as_ref().filter(|made| self.loaded.path() == Some(&made.path))
     }
 
     /// Asks of which channels a dataset is to be made, with what is proposed for the record shown.
@@ -124,34 +129,33 @@ impl GdcmApp {
         };
         let (sources, typed) = (records.sources.clone(), PathBuf::from(records.wanted.path.trim()));
         let path = self.at_home(typed);
-        let written = path.clone();
         let (number, stop) = self.record_reader.join();
         self.state.records.reading = Some(RecordsReading { name: "records".to_owned() });
-        let make = move || dataset_of_files(&sources, channels, band, &path, &Untold(stop));
+        let make = move || dataset_of_files(&sources, channels, band, path, &Untold(stop));
         self.in_thread("a dataset of records", make, move |app, made| {
             if !app.record_reader.is_newest(number) {
                 return;
             }
             app.state.records.reading = None;
             match made {
-                Some(Ok((dataset, channels))) => app.write_record_dataset(&dataset, channels, written),
+                Some(Ok((dataset, made))) => app.write_record_dataset(&dataset, made),
                 Some(Err(problems)) => app.state.records.wanted.problems = problems,
                 None => {}
             }
         });
     }
 
-    fn write_record_dataset(&mut self, dataset: &Dataset, channels: RecordChannels, path: PathBuf) {
+    fn write_record_dataset(&mut self, dataset: &Dataset, made: DatasetOfRecords) {
         let mut outputs = self.outputs();
         let written = outputs
-            .check(&[&path])
-            .and_then(|()| add_dataset(dataset, &path, &mut outputs))
+            .check(&[&made.path])
+            .and_then(|()| add_dataset(dataset, &made.path, &mut outputs))
             .and_then(|()| outputs.persist());
         match written {
             Ok(()) => {
                 self.state.forms.shown = None;
-                self.said_channels = Some((path.clone(), channels));
-                self.open(path, None);
+                self.open(made.path.clone(), None);
+                self.made_of_records = Some(made);
             }
             Err(error) => self.written(Err(error), FormKind::RecordDataset, RecordsCommand::MakeDataset.into()),
         }
@@ -243,7 +247,8 @@ impl GdcmApp {
             records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
             records.changed = true;
         }
-        self.state.records.faults = found.faults;
+        let left_out = self.made_of_records().into_iter().flat_map(|made| made.left_out.iter().cloned());
+        self.state.records.faults = found.faults.into_iter().chain(left_out).collect();
         if count == 0 {
             return;
         }
@@ -464,6 +469,16 @@ fn of_files(
     Ok(found)
 }
 
+/// A dataset that was made of records.
+pub(super) struct DatasetOfRecords {
+    /// Its file.
+    path: PathBuf,
+    /// Where its channels are found in the records, and their units.
+    channels: RecordChannels,
+    /// The records that are not in it, and why.
+    left_out: Vec<String>,
+}
+
 /// Most problems that are told.
 const MOST_PROBLEMS: usize = 6;
 
@@ -472,17 +487,22 @@ fn dataset_of_files(
     sources: &[PathBuf],
     mut channels: RecordChannels,
     band: Band,
-    path: &Path,
+    path: PathBuf,
     progress: &Untold,
-) -> Result<(Dataset, RecordChannels), Vec<String>> {
+) -> Result<(Dataset, DatasetOfRecords), Vec<String>> {
     let read = read_records(sources, progress).map_err(|error| vec![error.to_string()])?;
-    let (mut entries, mut problems) = (Vec::new(), Vec::new());
+    let mut problems: Vec<String> = read.faults;
+    let mut entries = Vec::new();
     for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
         let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
         problems.extend(row.problems.iter().map(|problem| format!("{}: {problem}", row.table.name)));
         if row.problems.is_empty() {
             channels.take_units(&row.layout, &row.table);
-            entries.push(relative_entry(row.layout.condition_record(&row.table, &row.guess, &channels), sources, path));
+            entries.push(relative_entry(
+                row.layout.condition_record(&row.table, &row.guess, &channels),
+                sources,
+                &path,
+            ));
         }
     }
     if entries.is_empty() {
@@ -492,5 +512,6 @@ fn dataset_of_files(
     let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let name = name.split('.').next().unwrap_or_default();
     let dataset = dataset_of_records(name, &channels, band, entries).map_err(|error| vec![error.to_string()])?;
-    Ok((dataset, channels))
+    let left_out = problems.into_iter().map(|why| format!("left out of the dataset: {why}")).collect();
+    Ok((dataset, DatasetOfRecords { path, channels, left_out }))
 }

@@ -16,11 +16,11 @@ use crate::view::{
 };
 use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::{BundleKind, ConditionId};
-use gdcm_core::records::RecordChannels;
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 
 use super::keyboard::{self, KeyOrder};
+use super::records::DatasetOfRecords;
 use super::{
     AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, NextFocus, PendingAction, Proof, Reader, Reply,
     ReplySender, ReportJob, SavedStudy, Setup,
@@ -50,8 +50,8 @@ pub struct GdcmApp {
     pub(super) opener: Reader,
     /// Reads flight records.
     pub(super) record_reader: Reader,
-    /// Where the channels of a dataset that was made of records are found in them, by the dataset's path.
-    pub(super) said_channels: Option<(PathBuf, RecordChannels)>,
+    /// The dataset that was last made of records.
+    pub(super) made_of_records: Option<DatasetOfRecords>,
     /// What waits for the answer whether to lose decisions that are not saved.
     pub(super) postponed: Option<PendingAction>,
     /// Whether that is done once they are saved.
@@ -114,7 +114,7 @@ impl GdcmApp {
             models: Reader::default(),
             opener: Reader::default(),
             record_reader: Reader::default(),
-            said_channels: None,
+            made_of_records: None,
             postponed: None,
             goes_on_once_saved: false,
             overwriting: None,

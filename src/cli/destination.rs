@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_core::dataset::{ConditionId, Dataset, DatasetHeader};
+use gdcm_core::dataset::{ConditionId, ConditionRecord, Dataset};
 use gdcm_core::records::LaidOutRecord;
 use gdcm_core::study::AdoptedModels;
 use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{Opened, OutputSet, add_dataset, load_any};
+use gdcm_files::{Opened, OutputSet, add_dataset, load_any, relative_folder};
 
 use super::{Failure, IdentifyArguments, caution, condition_of, ids, listed_conditions, note};
 
@@ -36,12 +36,10 @@ impl Destination {
             }
         };
         let condition = arguments.condition.map(|id| condition_of(&dataset, id)).transpose()?;
-        let dataset = match &arguments.description {
-            Some(description) => Arc::new(described(&dataset, description)?),
-            None => dataset,
-        };
-        let path = arguments.out.join(path.file_name().unwrap_or_default());
-        Ok(Some(Self { dataset, path, condition }))
+        let written = arguments.out.join(path.file_name().unwrap_or_default());
+        let folder = relative_folder(path.parent().unwrap_or(Path::new("")), &written);
+        let dataset = Arc::new(moved(&dataset, &folder, arguments.description.as_deref())?);
+        Ok(Some(Self { dataset, path: written, condition }))
     }
 
     /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
@@ -108,9 +106,20 @@ pub(super) fn said_conditions(records: &[LaidOutRecord]) -> String {
     said.iter().map(i64::to_string).collect::<Vec<_>>().join(", ")
 }
 
-fn described(dataset: &Dataset, description: &str) -> Result<Dataset, Failure> {
-    let header = DatasetHeader { description: description.to_owned(), ..dataset.header() };
-    let conditions = dataset.conditions().iter().map(|condition| condition.as_ref().clone()).collect();
-    Dataset::new(header, conditions)
-        .map_err(|error| Failure::Option { option: "--description", reason: error.to_string() })
+/// The dataset as it is written elsewhere: its records are found by way of `folder` from there, and it is described as asked.
+fn moved(dataset: &Dataset, folder: &str, description: Option<&str>) -> Result<Dataset, Failure> {
+    let mut header = dataset.header();
+    header.description = description.map_or(header.description, ToOwned::to_owned);
+    let refused = |reason: String| Failure::Option { option: "--description", reason };
+    let found = |record: &ConditionRecord| {
+        let stays = folder.is_empty() || folder == "." || Path::new(&record.file).is_absolute();
+        let file = if stays { record.file.clone() } else { format!("{folder}/{}", record.file) };
+        ConditionRecord { file, ..record.clone() }
+    };
+    let conditions = dataset
+        .conditions()
+        .iter()
+        .map(|condition| condition.as_ref().clone().with_records(condition.records().iter().map(found).collect()));
+    let conditions = conditions.collect::<Result<_, _>>().map_err(|error| refused(error.to_string()))?;
+    Dataset::new(header, conditions).map_err(|error| refused(error.to_string()))
 }

@@ -4,7 +4,7 @@ use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_core::dataset::Dataset;
+use gdcm_core::dataset::{ChannelRemedy, ConditionRecord, Dataset};
 use gdcm_core::identification::CautionNote;
 use gdcm_core::records::{
     LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step,
@@ -42,8 +42,7 @@ pub(super) fn laid_out(
     let (mut reading, mut wrong): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let tables = with_topics_joined(tables, channels, &wish);
     for table in parts(tables, &arguments.part)? {
-        let own = channels_of(&table, channels, dataset);
-        let (record, notes) = LaidOutRecord::proposed(table, &own, &wish);
+        let (record, notes) = as_dataset_says(table, channels, dataset, &wish);
         // A part is of those records that have samples then.
         if record.table.part_s.is_some() && record.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
             note(&format!("{}: no samples then", record.table.name));
@@ -81,8 +80,7 @@ pub(super) fn laid_out(
         if !record.problems.is_empty() {
             return record;
         }
-        let own = channels_of(&record.table, channels, dataset);
-        let (record, _) = LaidOutRecord::proposed(Arc::unwrap_or_clone(record.table), &own, &wish);
+        let (record, _) = as_dataset_says(Arc::unwrap_or_clone(record.table), channels, dataset, &wish);
         record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
         record
     };
@@ -107,12 +105,30 @@ pub(super) fn laid_out(
     }
 }
 
-/// The channels that a record is to give. One that the dataset itself names is in its units where its file says none, unless it stands
-/// there with a factor, which may be that of another unit.
-fn channels_of(table: &RecordTable, channels: &RecordChannels, dataset: Option<&Dataset>) -> RecordChannels {
-    let entry = dataset.and_then(|dataset| entry_of_dataset(dataset, table));
-    let is_plain = entry.is_some_and(|(_, entry)| entry.remedies.values().all(|remedy| remedy.factor == 1.0));
-    if is_plain { channels.clone().of_named_records() } else { channels.clone() }
+/// A record with its channels. One that the dataset itself names is as that says: in its units where the file says none, times the
+/// factors and less the delays that it keeps, but for what the command line says of the samples of a channel.
+fn as_dataset_says(
+    table: RecordTable,
+    channels: &RecordChannels,
+    dataset: Option<&Dataset>,
+    wish: &TimeWish,
+) -> (LaidOutRecord, Vec<String>) {
+    let Some((_, entry)) = dataset.and_then(|dataset| entry_of_dataset(dataset, &table)) else {
+        return LaidOutRecord::proposed(table, channels, wish);
+    };
+    let channels = channels.clone().of_named_records();
+    let (record, mut notes) = LaidOutRecord::proposed(table, &channels, wish);
+    let kept = |(name, remedy): (&String, &ChannelRemedy)| {
+        let factor = if channels.said.contains_key(name) { 1.0 } else { remedy.factor };
+        (name.clone(), ChannelRemedy { factor, ..*remedy })
+    };
+    let remedies = entry.remedies.iter().map(kept).filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect();
+    let words = |(name, remedy): (&String, &ChannelRemedy)| {
+        format!("{name}: times {}, {} s taken out, as the dataset says of this record", remedy.factor, remedy.delay_s)
+    };
+    let entry = ConditionRecord { remedies, used: true, ..entry.clone() };
+    notes.extend(entry.remedies.iter().map(words));
+    (record.as_said(&entry, &channels), notes)
 }
 
 /// The parts asked for, in place of the records that they are of.

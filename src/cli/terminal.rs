@@ -10,7 +10,7 @@ use serde::Serialize;
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::message_text::{sanitized, shortened_message};
 use gdcm_core::study::Progress;
-use gdcm_files::system_words;
+use gdcm_files::{system_words, write_pretty};
 
 use super::{Failure, listed_conditions};
 
@@ -142,8 +142,10 @@ pub(super) fn end(status: u8) -> u8 {
         return status;
     }
     // Texts, numbers and lists are JSON whatever they hold.
-    let object = serde_json::to_string_pretty(&*said).unwrap_or_default();
-    match print(&format!("{object}\n")) {
+    let mut object = Vec::new();
+    let written = write_pretty(&*said, &mut object);
+    debug_assert!(written.is_ok(), "there is memory to write to");
+    match print(&String::from_utf8_lossy(&object)) {
         Ok(()) => status,
         Err(failure) => {
             complain("error", &failure.to_string());

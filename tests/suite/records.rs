@@ -324,6 +324,32 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
 }
 
 #[test]
+fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv"];
+    let identified = |into: &str, more: &[&str], out: &str| {
+        let into = ["--into", into, "--condition", "7", "--out", out];
+        let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
+        assert_eq!(ended.status, 0, "{ended:?}");
+        let models = crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
+        (models, ended.error)
+    };
+    let units = ["--unit", "Q=rad/s", "--unit", "P=deg/s", "--unit", "LON=%", "--unit", "LAT=%"];
+    let (said, _) = identified("late.json", &units, "said");
+    let records = crate::read_json(&desk.path("said/late.json"))["conditions"][0]["records"].clone();
+    assert_eq!(records.as_array().unwrap().len(), 4, "each record once, under whatever name: {records}");
+    assert_eq!(records[3]["file"], "../flight_3.csv", "found from where the dataset is written");
+    assert_eq!((&records[0]["file"], &records[3]["remedies"]), (&json!("../flight_0.csv"), &Value::Null));
+    let (kept, told) = identified("said/late.json", &[], "kept");
+    assert_eq!(said, kept, "{told}");
+    assert!(told.contains("Q: times 57.29") && told.contains("as the dataset says of this record"), "{told}");
+    // What the command line says stands before it.
+    let (anew, told) = identified("said/late.json", &units, "anew");
+    assert_eq!(said, anew, "{told}");
+}
+
+#[test]
 fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_puts_it_right() {
     let desk = Desk::new();
     late_dataset(&desk.path("."));

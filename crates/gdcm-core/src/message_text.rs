@@ -7,7 +7,7 @@ use std::path::Path;
 pub fn sanitized(text: &str) -> String {
     let mut words = String::with_capacity(text.len());
     for character in text.chars() {
-        if character.is_control() || is_invisible(character) {
+        if is_unprintable(character) {
             words.extend(character.escape_default());
         } else {
             words.push(character);
@@ -19,6 +19,11 @@ pub fn sanitized(text: &str) -> String {
 /// A path in a plain text.
 pub fn sanitized_path(path: &Path) -> String {
     sanitized(&path.to_string_lossy())
+}
+
+/// Whether a character is no part of a plain text: a control character, or one that is not seen.
+pub fn is_unprintable(character: char) -> bool {
+    character.is_control() || is_invisible(character)
 }
 
 /// Whether a character has no shape of its own: it turns the writing direction, joins or parts letters, ends a line or a paragraph.

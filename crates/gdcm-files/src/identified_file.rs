@@ -15,7 +15,7 @@ use super::file_error::FileError;
 use super::models_file::{IDENTIFIED, model_text};
 use super::output_set::OutputSet;
 use crate::dataset_file::ModelText;
-use crate::json_text::Nested;
+use crate::json_text::{Nested, write_compact};
 
 /// What an identification found, with what its file says beside it.
 pub struct IdentifiedModels<'f> {
@@ -145,10 +145,7 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
         cautions: of.cautions.iter().map(caution_text).collect(),
         reading: of.reading,
     };
-    outputs.add(path, |file| {
-        serde_json::to_writer(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })
+    outputs.add(path, |file| write_compact(&text, file))
 }
 
 fn measured_text(measured: &ResponseEstimate) -> MeasuredText {

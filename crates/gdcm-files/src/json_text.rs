@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::path::Path;
 
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
 use gdcm_core::dataset::{BundleKind, Location};
-use gdcm_core::message_text::{sanitized, shortened};
+use gdcm_core::message_text::{is_unprintable, sanitized, shortened};
 use gdcm_core::units::number;
 use nalgebra::DMatrix;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
@@ -23,6 +24,48 @@ use crate::variables::ReadingBudget;
 /// Memory that a byte of a file of this program takes at most \[bytes\]: a number, of a digit and a comma at least, in a list that
 /// grows into twice its memory.
 const TYPED: u64 = 8;
+
+/// Writes a value as JSON on lines of their own, for people to read.
+pub fn write_pretty(value: &impl Serialize, file: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer_pretty(SpelledOut(&mut *file), value)?;
+    file.write_all(b"\n")
+}
+
+/// Writes a value as JSON on one line.
+pub(super) fn write_compact(value: &impl Serialize, file: &mut dyn Write) -> io::Result<()> {
+    serde_json::to_writer(SpelledOut(&mut *file), value)?;
+    file.write_all(b"\n")
+}
+
+/// Writes JSON in which control characters and invisible ones are spelt out, those too that JSON lets stand: a file that is shown on a
+/// terminal does nothing to it, and no name reads as another.
+struct SpelledOut<W>(W);
+
+impl<W: Write> Write for SpelledOut<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // Outside strings JSON is ASCII, and a piece of a string ends with a whole character.
+        match std::str::from_utf8(bytes) {
+            Ok(text) if !text.is_ascii() && text.contains(is_unprintable) => {
+                let mut spelled = String::with_capacity(2 * text.len());
+                for character in text.chars() {
+                    if character.is_ascii() || !is_unprintable(character) {
+                        spelled.push(character);
+                    } else {
+                        let units = character.encode_utf16(&mut [0; 2]).to_vec();
+                        units.iter().for_each(|unit| spelled.push_str(&format!("\\u{unit:04x}")));
+                    }
+                }
+                self.0.write_all(spelled.as_bytes())?;
+            }
+            _ => self.0.write_all(bytes)?,
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
 
 /// A kind of file: what its "format" and "version" have to say.
 #[derive(Clone, Copy, Debug)]
@@ -479,6 +522,21 @@ mod tests {
 
     fn read<const DEPTH: usize>(text: &str) -> Result<Nested<DEPTH>, String> {
         serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn what_would_act_on_a_terminal_is_spelt_out_and_read_back() {
+        let name = "a\u{9b}31m b\u{202e}c \u{e0041} \u{7f} \u{e9}\u{3b1}\u{1f600}\n";
+        let mut file = Vec::new();
+        write_pretty(&[name], &mut file).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        let left: Vec<char> = text.trim_end().chars().filter(|letter| is_unprintable(*letter)).collect();
+        // Line ends of its own, and a code that is nothing on a terminal.
+        assert_eq!(left, ['\n', '\u{7f}', '\n'], "{text:?}");
+        assert!(
+            text.contains("\\u009b31m") && text.contains("\\udb40\\udc41") && text.contains("\u{e9}\u{3b1}\u{1f600}")
+        );
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), [name]);
     }
 
     #[test]

@@ -56,6 +56,7 @@ pub use file_error::{ContentFault, FileError, system_words};
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
 pub use identified_file::{IdentifiedModels, add_identified};
 pub use importer::{FolderProgress, sources_folder};
+pub use json_text::write_pretty;
 pub use mat::write as write_mat;
 pub use model_files::{EVERY_TABLE, FoundModels, models_of_bytes, read_models};
 pub use models_file::add_models;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::ModelText;
 use crate::file_error::FileError;
-use crate::json_text::{Format, Limited, list};
+use crate::json_text::{Format, Limited, list, write_compact};
 use crate::output_set::OutputSet;
 use crate::variables::ReadingBudget;
 
@@ -38,8 +38,7 @@ pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -
 pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let models = models.iter().map(model_text).collect();
     let text = ModelsText { format: MODELS.name.to_owned(), version: MODELS.version, models };
-    serde_json::to_writer(&mut *file, &text)?;
-    file.write_all(b"\n")
+    write_compact(&text, file)
 }
 
 /// The text of a model outside a dataset.

@@ -8,7 +8,7 @@ use gdcm_core::requirements::{LevelBoundaries, Tolerance, ToleranceError, Tolera
 use serde::{Deserialize, Serialize};
 
 use super::file_error::{ContentError, ContentFault, FileError};
-use super::json_text::{Format, json_error};
+use super::json_text::{Format, json_error, write_pretty};
 use super::output_set::OutputSet;
 use super::source::Source;
 use super::variables::ReadingBudget;
@@ -53,10 +53,7 @@ pub fn add_tolerances(table: &ToleranceTable, path: &Path, outputs: &mut OutputS
         source: table.source().to_owned(),
         tolerances: table.rows().to_vec(),
     };
-    outputs.add(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })
+    outputs.add(path, |file| write_pretty(&text, file))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use gdcm_core::study::{
 
 use super::csv_table::write_records;
 use super::file_error::FileError;
+use super::json_text::write_pretty;
 use super::output_set::{OutputSet, make_directory};
 
 const NAME: &str = "gdcm-requirements";
@@ -66,10 +67,7 @@ pub fn write_requirements(
         requirements,
         time_histories,
     };
-    outputs.add(&json, |file| {
-        serde_json::to_writer_pretty(&mut *file, &document)?;
-        file.write_all(b"\n")
-    })?;
+    outputs.add(&json, |file| write_pretty(&document, file))?;
     outputs.add(&table, |file| write_rows(requirements, time_histories, file))?;
     outputs.persist()
 }

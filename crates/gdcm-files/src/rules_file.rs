@@ -11,7 +11,7 @@ use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::json_text::{Format, list};
+use crate::json_text::{Format, list, write_pretty};
 use crate::output_set::OutputSet;
 use crate::source::Source;
 use crate::variables::ReadingBudget;
@@ -39,10 +39,7 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
 /// Writes a rules file beside others of `outputs`.
 pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let text = text_of(rules);
-    outputs.add(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })
+    outputs.add(path, |file| write_pretty(&text, file))
 }
 
 fn rules_of(text: RulesText) -> Result<Rules, ContentError> {

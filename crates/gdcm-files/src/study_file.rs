@@ -17,8 +17,7 @@ use gdcm_core::whole_number::whole;
 
 use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
 use crate::file_error::{ContentError, ContentFault, FileError};
-use crate::json_text::Format;
-use crate::json_text::list;
+use crate::json_text::{Format, list, write_pretty};
 use crate::output_set::{Existing, OutputSet};
 use crate::source::Source;
 use crate::variables::ReadingBudget;
@@ -250,10 +249,7 @@ fn save(
     };
     let text = StudyText::of(study, reference);
     let mut output = OutputSet::new(Existing::Replace, loaded.origin.file().into_iter().collect());
-    output.add(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, &text)?;
-        file.write_all(b"\n")
-    })?;
+    output.add(path, |file| write_pretty(&text, file))?;
     output.persist()
 }
 
@@ -338,8 +334,10 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// The way from the folder of `file` to `folder`, with `/` between its parts; the folder as it is where there is none.
+/// The way from the folder of `file` to `folder`, the present one where that is empty, with `/` between its parts; the folder as it is
+/// where there is none.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let absolute = |path: &Path| std::path::absolute(path).ok();
     let base = absolute(file).and_then(|file| file.parent().map(Path::to_owned));
     let way = absolute(folder).zip(base).and_then(|(folder, base)| pathdiff::diff_paths(folder, base));

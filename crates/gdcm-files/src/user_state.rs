@@ -7,7 +7,7 @@ use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
 
 use super::file_error::FileError;
-use super::json_text::Format;
+use super::json_text::{Format, write_pretty};
 use super::output_set::{make_directory, write_whole};
 use super::source::Source;
 use super::variables::ReadingBudget;
@@ -50,7 +50,7 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     let files = std::iter::once(file.clone()).chain(others).take(MOST).collect();
     let text = RecentText { format: FORMAT.name.to_owned(), version: FORMAT.version, files };
     make_directory(directory)?;
-    write_whole(&directory.join(NAME), |writer| Ok(serde_json::to_writer_pretty(writer, &text)?))
+    write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
 
 /// The file that says so.

@@ -6,6 +6,7 @@ use crate::view::{
     Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
 };
 use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, Signs, UnitRule};
+use gdcm_core::dataset::ChannelSide;
 use gdcm_core::units::number;
 
 use super::details::{signs_of, trim_words};
@@ -128,21 +129,24 @@ fn dataset_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands
     }
 }
 
-/// The inputs or the outputs among the rules.
-type Channels = fn(&mut Rules) -> &mut Vec<ChannelRule>;
-/// A text of a channel's rule: its name in accessible names, the hint, the width, what stands in it, what is typed.
-type ChannelField = (&'static str, &'static str, f32, fn(&ChannelRule) -> String, fn(&mut ChannelRule, String));
+/// A text of a channel's rule: its name in accessible names, the hint, the width, what stands in it.
+type ChannelField = (&'static str, &'static str, f32, fn(&ChannelRule) -> String);
+/// What is typed into it: the rules, the channel's side and place, the text.
+type TypedField = fn(&mut Rules, (ChannelSide, usize), String);
 
-const SIDES: [(&str, Channels); 2] = [("input", |rules| &mut rules.inputs), ("output", |rules| &mut rules.outputs)];
-const FIELDS: [ChannelField; 3] = [
-    ("Name", "name", 90.0, |channel| channel.name.clone(), |channel, text| channel.name = text),
-    ("Unit", "?", 80.0, |channel| channel.unit.clone(), |channel, text| channel.unit = text),
+const SIDES: [(&str, ChannelSide); 2] = [("input", ChannelSide::Input), ("output", ChannelSide::Output)];
+const FIELDS: [(ChannelField, TypedField); 3] = [
+    (("Name", "name", 90.0, |channel| channel.name.clone()), |rules, (side, index), text| {
+        rules.rename(side, index, text)
+    }),
+    (("Unit", "?", 80.0, |channel| channel.unit.clone()), |rules, (side, index), text| {
+        rules.channels_mut(side)[index].unit = text
+    }),
     (
-        "Unit in files",
-        "as files say",
-        110.0,
-        |channel| channel.unit_in_files.clone().unwrap_or_default(),
-        |channel, text| channel.unit_in_files = Some(text).filter(|text| !text.is_empty()),
+        ("Unit in files", "as files say", 110.0, |channel| channel.unit_in_files.clone().unwrap_or_default()),
+        |rules, (side, index), text| {
+            rules.channels_mut(side)[index].unit_in_files = Some(text).filter(|text| !text.is_empty());
+        },
     ),
 ];
 
@@ -154,28 +158,28 @@ fn channels_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, command
             ui.label(palette.small(heading));
         }
         ui.end_row();
-        for (side, channels) in SIDES {
-            for (index, channel) in channels(&mut rules).iter().enumerate() {
-                for (what, hint, width, shown, typed) in FIELDS {
-                    let name = format!("{what} of {side} {}", index + 1);
+        for (word, side) in SIDES {
+            for (index, channel) in rules.channels_mut(side).iter().enumerate() {
+                for ((what, hint, width, shown), typed) in FIELDS {
+                    let name = format!("{what} of {word} {}", index + 1);
                     if let Some(text) = entry_ui(ui, &name, &shown(channel), hint, width) {
                         let text = text.trim().to_owned();
-                        commands.push(assembly.changed(|rules| typed(&mut channels(rules)[index], text)));
+                        commands.push(assembly.changed(|rules| typed(rules, (side, index), text)));
                     }
                 }
-                let name = format!("Remove {side} {}", channel.name);
+                let name = format!("Remove {word} {}", channel.name);
                 if named(ui.small_button("×"), Role::Button, &name).on_hover_text(&name).clicked() {
-                    commands.push(assembly.changed(|rules| drop(channels(rules).remove(index))));
+                    commands.push(assembly.changed(|rules| drop(rules.channels_mut(side).remove(index))));
                 }
                 ui.end_row();
             }
         }
     });
     ui.horizontal(|ui| {
-        for (side, channels) in SIDES {
-            let name = format!("{side} {}", channels(&mut rules).len() + 1);
-            let add = assembly.changed(|rules| channels(rules).push(ChannelRule::named(name)));
-            button_ui(ui, Button::new(format!("Add {side}")).small(), "", add, commands);
+        for (word, side) in SIDES {
+            let name = format!("{word} {}", rules.channels_mut(side).len() + 1);
+            let add = assembly.changed(|rules| rules.channels_mut(side).push(ChannelRule::named(name)));
+            button_ui(ui, Button::new(format!("Add {word}")).small(), "", add, commands);
         }
     });
     signs_ui(ui, assembly, palette, commands);

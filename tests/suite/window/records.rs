@@ -415,6 +415,29 @@ pub(super) fn rows_shown(window: &Window) -> usize {
 }
 
 #[test]
+fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = |step_s: f64| {
+        let row = |k: u32| format!("{},{},{}\n", step_s * f64::from(k), (0.1 * f64::from(k)).sin(), f64::from(k).cos());
+        (0..500).map(row).collect::<String>()
+    };
+    for (file, step_s) in [("good.csv", 0.02), ("slow.csv", 20.0)] {
+        std::fs::write(folder.path().join(file), "time [s],M,q [rad/s]\n".to_owned() + &rows(step_s)).unwrap();
+    }
+    let mut window = window();
+    show(&mut window, View::Records);
+    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
+    click(&mut window, "Make a dataset of them…");
+    type_into(&mut window, "Inputs of the dataset", "M");
+    type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
+    wait_until(&mut window, "the dataset", |window| state(window).dataset().inputs()[0].name == "M");
+    show(&mut window, View::Records);
+    wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
+    assert!(window.query_by_label_contains("left out of the dataset: slow: ").is_some());
+}
+
+#[test]
 fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     let folder = tempfile::tempdir().unwrap();
     let line = |k: u32, step_s: f64, of: fn(f64) -> f64| format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)));

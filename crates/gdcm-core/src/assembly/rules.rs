@@ -7,7 +7,8 @@ use regex::{Regex, RegexBuilder};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Row, RowRole};
+use super::{Row, RowRole, standard_on_axis};
+use crate::dataset::ChannelSide;
 use crate::whole_number::whole_or_none;
 
 /// A channel of the dataset, and what files that do not say call its unit.
@@ -178,6 +179,52 @@ impl Default for Rules {
 }
 
 impl Rules {
+    /// The inputs or the outputs of the dataset.
+    pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
+        match side {
+            ChannelSide::Input => &mut self.inputs,
+            ChannelSide::Output => &mut self.outputs,
+        }
+    }
+
+    /// Calls a channel of the dataset otherwise. Files call it as before; what was said of it, on-axis responses, conversions and signs,
+    /// is said of the new name, and a response that matters in a helicopter by its new name is marked.
+    pub fn rename(&mut self, side: ChannelSide, index: usize, name: String) {
+        let Some(channel) = self.channels_mut(side).get_mut(index) else { return };
+        let old = std::mem::replace(&mut channel.name, name.clone());
+        if old == name {
+            return;
+        }
+        channel.aliases.retain(|alias| *alias != name);
+        if !old.is_empty() && !channel.aliases.contains(&old) {
+            channel.aliases.push(old.clone());
+        }
+        for (output, input) in &mut self.on_axis {
+            let of_side = if side == ChannelSide::Input { input } else { output };
+            if *of_side == old {
+                of_side.clone_from(&name);
+            }
+        }
+        let others = if side == ChannelSide::Input { &self.outputs } else { &self.inputs };
+        let pair = |other: &ChannelRule| match side {
+            ChannelSide::Input => (other.name.clone(), name.clone()),
+            ChannelSide::Output => (name.clone(), other.name.clone()),
+        };
+        let pairs: Vec<_> = others.iter().map(pair).filter(|(output, input)| standard_on_axis(output, input)).collect();
+        pairs.into_iter().for_each(|pair| {
+            if !self.on_axis.contains(&pair) {
+                self.on_axis.push(pair)
+            }
+        });
+        self.units.iter_mut().filter(|unit| unit.channel == old).for_each(|unit| unit.channel.clone_from(&name));
+        let of_models = self.rows.values_mut().filter_map(|row| row.signs.as_mut());
+        for signs in of_models.chain(self.role_signs.values_mut()).chain([&mut self.signs]) {
+            if let Some(sign) = signs.remove(&old) {
+                signs.insert(name.clone(), sign);
+            }
+        }
+    }
+
     /// The signs that are said of the channels of a model: those of the model before those of its role, these before those of all.
     pub fn signs_of(&self, key: &str, role: Option<RowRole>) -> Signs {
         let mut signs = self.signs.clone();
@@ -379,6 +426,33 @@ mod tests {
             pattern.read(name, &mut row);
         }
         row
+    }
+
+    #[test]
+    fn what_was_said_of_a_channel_follows_its_name() {
+        let mut rules = Rules {
+            inputs: vec![ChannelRule::named("xb"), ChannelRule::named("COL")],
+            outputs: vec![ChannelRule::named("Q"), ChannelRule::named("az")],
+            on_axis: vec![("az".into(), "COL".into())],
+            units: vec![UnitRule { channel: "xb".into(), from: "in".into(), factor: 8.0 }],
+            signs: Signs::from([("az".into(), -1.0)]),
+            role_signs: BTreeMap::from([("identified".into(), Signs::from([("xb".into(), -1.0)]))]),
+            ..Rules::default()
+        };
+        rules.rename(ChannelSide::Input, 0, "LON".into());
+        rules.rename(ChannelSide::Output, 1, "NZ".into());
+        let pair = |output: &str, input: &str| (output.to_owned(), input.to_owned());
+        assert_eq!(rules.on_axis, [pair("NZ", "COL"), pair("Q", "LON")]);
+        assert_eq!(rules.inputs[0].aliases, ["xb"], "files call it as before");
+        assert_eq!(rules.units[0].channel, "LON");
+        assert_eq!(rules.signs, Signs::from([("NZ".into(), -1.0)]));
+        assert_eq!(rules.role_signs["identified"], Signs::from([("LON".into(), -1.0)]));
+        let before = rules.clone();
+        rules.rename(ChannelSide::Input, 0, "LON".into());
+        rules.rename(ChannelSide::Input, 7, "none".into());
+        assert_eq!(rules, before);
+        rules.rename(ChannelSide::Input, 0, "xb".into());
+        assert_eq!(rules.inputs[0].aliases, ["LON"]);
     }
 
     #[test]

@@ -139,7 +139,7 @@ impl Condition {
     }
 
     /// The same condition with these models for its identified bundle, and these flight records, each in place of the one of its
-    /// name, or behind the others. A record of which parts come is no longer used, for evidence counts once.
+    /// name, or else of the same samples of the same file, or behind the others. A record of which parts come is no longer used, for evidence counts once.
     ///
     /// # Errors
     /// Those of [`Condition::new`] and [`Condition::with_records`].
@@ -149,8 +149,9 @@ impl Condition {
             whole.used = false;
         }
         for record in records {
-            match kept.iter_mut().find(|other| other.name == record.name) {
-                Some(other) => *other = record,
+            let of_name = kept.iter().position(|other| other.name == record.name);
+            match of_name.or_else(|| kept.iter().position(|other| other.is_same_as(&record))) {
+                Some(index) => kept[index] = record,
                 None => kept.push(record),
             }
         }
@@ -362,11 +363,21 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
-    /// Whether it is a part of what another record is all of. The folders of their files may be said from different places.
-    fn is_part_of(&self, whole: &ConditionRecord) -> bool {
+    /// Whether both are of the same record of the same file. The folders of their files may be said from different places.
+    fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let name = |record: &Self| record.file.rsplit('/').next().map(str::to_owned);
-        let is_part = self.part_s.is_some() && whole.part_s.is_none();
-        is_part && name(self) == name(whole) && self.variable == whole.variable
+        let differ = self.sha256.as_ref().zip(other.sha256.as_ref()).is_some_and(|(a, b)| a != b);
+        name(self) == name(other) && self.variable == other.variable && !differ
+    }
+
+    /// Whether both are the same samples, under whatever names.
+    fn is_same_as(&self, other: &ConditionRecord) -> bool {
+        self.part_s == other.part_s && self.is_of_same_source(other)
+    }
+
+    /// Whether it is a part of what another record is all of.
+    fn is_part_of(&self, whole: &ConditionRecord) -> bool {
+        self.part_s.is_some() && whole.part_s.is_none() && self.is_of_same_source(whole)
     }
 
     /// A record that is used, of an unknown manoeuvre.

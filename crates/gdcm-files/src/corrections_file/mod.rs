@@ -13,6 +13,7 @@ use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::Analysis;
 
 use super::file_error::FileError;
+use super::json_text::write_pretty;
 use super::output_set::{OutputSet, make_directory};
 use tables::response_table;
 
@@ -59,6 +60,5 @@ pub(super) fn write_corrections(
     chosen: &BTreeSet<ConditionId>,
     file: &mut dyn Write,
 ) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut *file, &corrections(analysis, sha256, chosen))?;
-    file.write_all(b"\n")
+    write_pretty(&corrections(analysis, sha256, chosen), file)
 }

@@ -12,6 +12,7 @@ use flate2::write::GzEncoder;
 use gdcm_core::dataset::Dataset;
 
 use super::file_error::FileError;
+use super::json_text::write_compact;
 use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
 use super::variables::ReadingBudget;
@@ -151,11 +152,11 @@ pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> R
     outputs.add(path, |file| {
         if packed {
             let mut encoder = GzEncoder::new(file, Compression::default());
-            serde_json::to_writer(&mut encoder, &text)?;
+            write_compact(&text, &mut encoder)?;
             encoder.finish()?;
             Ok(())
         } else {
-            Ok(serde_json::to_writer(file, &text)?)
+            write_compact(&text, file)
         }
     })
 }

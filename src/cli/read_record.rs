@@ -40,6 +40,7 @@ pub(super) fn laid_out(
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
     let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
     let (mut reading, mut wrong): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let units_are_known = channels.inputs.iter().chain(&channels.outputs).all(|rule| !rule.unit.is_empty());
     let tables = with_topics_joined(tables, channels, &wish);
     for table in parts(tables, &arguments.part)? {
         let (record, notes) = as_dataset_says(table, channels, dataset, &wish);
@@ -77,7 +78,7 @@ pub(super) fn laid_out(
     }
     // By the units that the channels have by now: a record before the first that says them may say none.
     let by_units = |record: LaidOutRecord| {
-        if !record.problems.is_empty() {
+        if units_are_known || !record.problems.is_empty() {
             return record;
         }
         let (record, _) = as_dataset_says(Arc::unwrap_or_clone(record.table), channels, dataset, &wish);

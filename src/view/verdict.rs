@@ -165,8 +165,21 @@ fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
         ConflictKind::AboveUpper { .. } | ConflictKind::BelowLower { .. } | ConflictKind::TooFarApart { .. } => {
             format!("{} stops at a bound", joined(&state.dataset().pair_name(miss.pair)))
         }
-        ConflictKind::Loop { .. } | ConflictKind::Unclear => format!("{} disagree", miss.why.entries.len().max(2)),
+        ConflictKind::Loop { .. } | ConflictKind::Unclear => {
+            let missed: Vec<Pair> = shown.gains.unmatched.iter().map(|miss| miss.pair).collect();
+            shared_words(state, &missed).unwrap_or_else(|| format!("{} disagree", miss.why.entries.len().max(2)))
+        }
     }
+}
+
+/// "2 share PED": responses that have an input or an output in common, by which they pull at one another.
+fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
+    let [first, rest @ ..] = pairs else { return None };
+    let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
+    let input = rest.iter().all(|pair| pair.input == first.input).then(|| &inputs[first.input]);
+    let output = || rest.iter().all(|pair| pair.output == first.output).then(|| &outputs[first.output]);
+    let channel = input.or_else(output).filter(|_| !rest.is_empty())?;
+    Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
 /// A name that is not broken at its end of line.
@@ -367,6 +380,18 @@ mod tests {
         assert_eq!(verdict.rows[0].words, "fitted, none held");
         assert_eq!(labels(&verdict), ["Hold the on-axis responses"]);
         assert!(!verdict.is_met());
+    }
+
+    #[test]
+    fn responses_that_have_a_channel_in_common_are_told_by_it() {
+        let state = state_of(&[]);
+        let words = |pairs: &[(usize, usize)]| {
+            let pairs: Vec<Pair> = pairs.iter().map(|(output, input)| Pair::new(*output, *input)).collect();
+            shared_words(&state, &pairs)
+        };
+        assert_eq!(words(&[(2, 2), (4, 2)]).as_deref(), Some("2 share PED"));
+        assert_eq!(words(&[(1, 0), (1, 3), (1, 2)]).as_deref(), Some("3 share Q"));
+        assert_eq!((words(&[(2, 2), (5, 3)]), words(&[(2, 2)]), words(&[])), (None, None, None));
     }
 
     #[test]

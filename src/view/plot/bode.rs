@@ -21,7 +21,7 @@ use super::navigation::pressed_digit;
 use super::picking::{Hit, nearest, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, readout_strip_ui};
-use super::rule::{BodeBand, ReferenceLine};
+use super::rule::{BodeBand, ReferenceLine, rule_ends};
 use crate::view::controls::{elided, named, painted_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
@@ -31,8 +31,8 @@ const MAGNITUDE_PART: f32 = 0.52;
 const HEADING: f32 = 20.0;
 /// Space above and below the read-out \[pt\].
 const GAP: f32 = 6.0;
-/// Space at the right for the unit of the frequencies, and for the names of curves too \[pt\].
-const MARGINS: [f32; 2] = [36.0, 78.0];
+/// Space at the right for the unit of the frequencies, for the names of curves, and for those of lines \[pt\].
+const MARGINS: [f32; 3] = [36.0, 78.0, 118.0];
 /// In a lower plot, the values have no room between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
 /// Height of the strip of coherence, and of the plot that has room for it \[pt\].
@@ -332,7 +332,7 @@ struct Places {
 
 impl Places {
     fn of(area: Rect, scene: &BodeScene<'_>) -> Self {
-        let inner = area.with_max_x(area.right() - MARGINS[usize::from(scene.names_curves)]);
+        let inner = area.with_max_x(area.right() - margin(scene));
         let has_coherence = !scene.coherence.is_empty() && inner.height() >= LEAST_WITH_COHERENCE;
         let coherence = has_coherence.then(|| {
             let foot = inner.with_min_y(inner.bottom() - COHERENCE_HEIGHT);
@@ -468,7 +468,7 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
         } else if scene.stale && index == 0 {
             painted_text(ui, line, -0.01, scene.message.unwrap_or("updating…"), small.clone(), palette.dim_text);
         }
-        if scene.names_curves {
+        if scene.names_curves || !scene.rules.is_empty() {
             names_ui(ui, pane, scene, view, palette);
         }
     }
@@ -519,7 +519,16 @@ const NAMED: [Role; 5] =
 /// Least distance between two names \[pt\].
 const NAME_GAP: f32 = 14.0;
 
-/// The names of the heavy curves at their ends, as far as there is room for them.
+/// Space at the right \[pt\].
+fn margin(scene: &BodeScene<'_>) -> f32 {
+    match (scene.names_curves, scene.rules.is_empty()) {
+        (true, _) => MARGINS[1],
+        (false, true) => MARGINS[0],
+        (false, false) => MARGINS[2],
+    }
+}
+
+/// The names of the heavy curves at their ends, and of the lines that curves are read against.
 fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
     let Some(transform) = view.transform(pane) else { return };
     let frame = *transform.frame();
@@ -534,7 +543,8 @@ fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette
         let color = palette.name_of(palette.role_style(role, false).color.to_opaque());
         (y, role.name().to_owned(), color)
     };
-    let mut ends: Vec<(f32, String, Color32)> = NAMED.into_iter().filter_map(end).map(named).collect();
+    let heavy = NAMED.into_iter().filter(|_| scene.names_curves).filter_map(end).map(named);
+    let mut ends: Vec<(f32, String, Color32)> = heavy.chain(rule_ends(scene.rules, pane, transform, palette)).collect();
     if let (Pane::Magnitude, Some([with, without])) = (pane, scene.invalid.and_then(|invalid| invalid.ends_db)) {
         let at = transform.position_from_point(&PlotPoint::new(0.0, 0.5 * (with + without)));
         let y = at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0);

@@ -1,60 +1,41 @@
 //! Labelled lines across a pane: what a figure of the fit is at every frequency.
 
-use egui::{Align2, FontId, Rangef, Rect, Ui, pos2, vec2};
+use egui::{Color32, Rect, Ui, vec2};
 use egui_plot::{FilledArea, PlotBounds, PlotPoint, PlotTransform, PlotUi};
 
 pub use gdcm_files::figure::{BodeBand, Level, Pane, ReferenceKind, ReferenceLine};
 
 use crate::view::palette::Palette;
 
-/// Font of the labels.
-const FONT: FontId = FontId::proportional(10.5);
-/// Least distance between two labels \[pt\].
-const LABEL_GAP: f32 = 12.0;
-
-/// Draws the rules of a pane into the plot that was drawn as `transform` says, with their labels at the left, beside one another where
-/// the lines are close. A label without room is left out.
+/// Draws the rules of a pane into the plot that was drawn as `transform` says.
 pub(super) fn rules_ui(ui: &Ui, rules: &[ReferenceLine], pane: Pane, transform: &PlotTransform, palette: &Palette) {
-    let frame = *transform.frame();
-    let painter = ui.painter().with_clip_rect(frame.shrink(1.0));
+    let painter = ui.painter().with_clip_rect(transform.frame().shrink(1.0));
     let mut shapes = Vec::new();
-    let mut labels = Vec::new();
     for rule in rules.iter().filter(|rule| rule.pane == pane) {
-        let path = path(&rule.level, transform);
-        let left = frame.left() + LABEL_LEFT;
-        let at = path.iter().find(|at| at.x >= left).or(path.first());
-        let look = palette.curve_style(rule.kind.line());
-        if let Some(at) = at.filter(|at| frame.y_range().contains(at.y)) {
-            labels.push((rule.kind, at.y, format!("{}{}", rule.label, rule.note), look.color));
-        }
-        look.add_shapes(path, &mut shapes);
+        palette.curve_style(rule.kind.line()).add_shapes(path(&rule.level, transform), &mut shapes);
     }
     painter.extend(shapes);
-    labels.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let mut taken = Vec::new();
-    for (_, y, label, color) in labels {
-        let Some(bottom) = free_place(y - 1.0, frame.y_range(), &taken) else { continue };
-        taken.push(bottom);
-        let galley = painter.layout_no_wrap(label, FONT, color);
-        let place: Rect = Align2::LEFT_BOTTOM.anchor_size(pos2(frame.left() + LABEL_LEFT, bottom), galley.size());
-        painter.rect_filled(place.expand(1.0), 2.0, palette.background.gamma_multiply(0.75));
-        painter.galley(place.min, galley, color);
+}
+
+/// The labels of the rules of a pane, each at the height where its line leaves the plot, what is said besides below it.
+pub(super) fn rule_ends(
+    rules: &[ReferenceLine],
+    pane: Pane,
+    transform: &PlotTransform,
+    palette: &Palette,
+) -> Vec<(f32, String, Color32)> {
+    let frame = *transform.frame();
+    let mut ends = Vec::new();
+    for rule in rules.iter().filter(|rule| rule.pane == pane) {
+        let path = path(&rule.level, transform);
+        let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else { continue };
+        let color = palette.name_of(palette.curve_style(rule.kind.line()).color.to_opaque());
+        ends.push((end.y, rule.label.clone(), color));
+        let note = rule.note.trim_start_matches([',', ':', ' ']);
+        ends.extend((!note.is_empty()).then(|| (end.y + 0.1, note.to_owned(), palette.dim_text)));
     }
+    ends
 }
-
-/// The lower edge of a label nearest to `wanted` that keeps clear of those placed already, and of the ends of the plot; at most two
-/// labels away, where it still is seen to belong to its line.
-fn free_place(wanted: f32, frame: Rangef, taken: &[f32]) -> Option<f32> {
-    let steps = [0.0, 1.0, -1.0, 2.0, -2.0];
-    let is_free = |bottom: &f32| {
-        let is_within = *bottom - LABEL_GAP >= frame.min && *bottom <= frame.max;
-        is_within && taken.iter().all(|other| (bottom - other).abs() >= LABEL_GAP)
-    };
-    steps.into_iter().map(|step| wanted + step * LABEL_GAP).find(is_free)
-}
-
-/// Distance of the labels from the left edge \[pt\].
-const LABEL_LEFT: f32 = 8.0;
 
 fn path(level: &Level, transform: &PlotTransform) -> Vec<egui::Pos2> {
     let points = level.points(transform.bounds().min()[0], transform.bounds().max()[0]);
@@ -104,22 +85,6 @@ fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn labels_keep_clear_of_one_another_and_one_without_room_is_left_out() {
-        let frame = Rangef::new(0.0, 30.0);
-        let mut taken = Vec::new();
-        for _ in 0..4 {
-            taken.extend(free_place(20.0, frame, &taken));
-        }
-        assert_eq!(taken, [20.0], "there is room for two, but not for one above and one below this one");
-        assert_eq!(free_place(29.0, Rangef::new(0.0, 40.0), &[29.0]), Some(17.0));
-    }
-}
-
-#[cfg(test)]
-mod tests2 {
-    use super::super::rule::*;
 
     #[test]
     fn a_stretch_counts_where_it_reaches_into_the_view() {

@@ -96,8 +96,9 @@ const UNITS: &[(Dimension, f64, &[&str])] = {
 impl PhysicalUnit {
     /// The unit that a text spells, however engineers write it: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick", "msec".
     pub fn of(text: &str) -> Option<Self> {
-        let text = folded_unit(text);
-        let (dimension, size, names) = UNITS.iter().find(|(_, _, names)| names.contains(&text.as_str()))?;
+        let spelled = |text: &str| UNITS.iter().find(|(_, _, names)| names.contains(&text));
+        // Most are spelt as usual: of each column of each record this is asked for many units.
+        let (dimension, size, names) = spelled(text).or_else(|| spelled(&folded_unit(text)))?;
         Some(Self { dimension: *dimension, size: *size, name: names[0] })
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
 
@@ -167,7 +168,7 @@ impl Default for Rules {
             on_axis: Vec::new(),
             // Where the rigid-body responses of helicopters are compared.
             band: (0.5, 12.0),
-            patterns: standard_patterns(),
+            patterns: standard_patterns().to_vec(),
             units: Vec::new(),
             signs: Signs::new(),
             role_signs: BTreeMap::new(),
@@ -387,7 +388,13 @@ impl PartialEq for NamePattern {
 }
 
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
-pub fn standard_patterns() -> Vec<NamePattern> {
+pub fn standard_patterns() -> &'static [NamePattern] {
+    /// Compiled once: every record asks for them.
+    static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(compiled_patterns);
+    &STANDARD
+}
+
+fn compiled_patterns() -> Vec<NamePattern> {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
     let offset = |words: &str, coordinate: &str| {
         format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
@@ -471,7 +478,7 @@ mod tests {
 
     #[test]
     fn a_trim_of_which_a_part_is_not_understood_is_told() {
-        let unread = |name: &str| unread_offsets(name, &standard_patterns());
+        let unread = |name: &str| unread_offsets(name, standard_patterns());
         let row = read("c3/dV+5_dROC+150_dPHI+5");
         assert_eq!(row.perturbation.into_values().collect::<Vec<_>>(), [5.0, 150.0, 5.0]);
         assert!(unread("dV+5_dROC+150_dPHI+5").is_empty() && unread("V-10kt roc+150fpm").is_empty());

@@ -118,7 +118,7 @@ impl LaidOutRecord {
     /// A record with the columns proposed for its channels, and what was chosen, a line a choice.
     pub fn proposed(table: RecordTable, channels: &RecordChannels, time: &TimeWish) -> (Self, Vec<String>) {
         let LayoutProposal { layout, notes, problems, cautions } = RecordLayout::proposed(&table, channels, time);
-        let guess = RecordGuess::of_table(&table, &standard_patterns());
+        let guess = RecordGuess::of_table(&table, standard_patterns());
         let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
         (Self { table: Arc::new(table), layout, guess, used: true, problems, cautions, flight }, notes)
     }
@@ -226,7 +226,7 @@ mod tests {
     fn a_name_says_manoeuvre_condition_and_validation() {
         let patterns = standard_patterns();
         let guess = |name: &str| {
-            let guess = RecordGuess::of(name, &patterns);
+            let guess = RecordGuess::of(name, patterns);
             (guess.kind, guess.held_out, guess.condition, guess.airspeed_kt)
         };
         assert_eq!(guess("cond01_sweep_LON_1.csv"), (RecordKind::Sweep, false, Some(1), None));

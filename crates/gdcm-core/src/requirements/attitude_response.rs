@@ -90,6 +90,8 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
 /// below it, where no records say anything, slow and unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
+    /// What many points in a row are read from.
+    samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
     omega: Vec<f64>,
     magnitude_db: Vec<f64>,
@@ -125,7 +127,13 @@ impl<'a> AttitudeResponse<'a> {
         let on_branch = if principal > FRAC_PI_2 { principal - TAU } else { principal };
         let turns = on_branch - phase[lowest_of_band];
         phase.iter_mut().for_each(|phase| *phase += turns);
-        Ok(Self { response, output, omega, magnitude_db, phase, lowest_of_band })
+        Ok(Self { response, samples: response, output, omega, magnitude_db, phase, lowest_of_band })
+    }
+
+    /// The same response, of which many points in a row are read from samples of it.
+    #[must_use]
+    pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
+        Self { samples, ..self }
     }
 
     /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
@@ -174,11 +182,13 @@ impl<'a> AttitudeResponse<'a> {
     }
 
     /// Phases \[rad\] at the rising frequencies `omega` \[rad/s\], unwrapped from `first`, that of the first of them; none where one
-    /// has no response. The grid may end before them.
+    /// has no response. The grid may end before them. The last is that of the response itself, those before it may be of its samples.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
-        let polar = polar(self.response, self.output, omega);
+        let (last, before) = omega.split_last()?;
+        let mut found = polar(self.samples, self.output, before);
+        found.extend(polar(self.response, self.output, &[*last]));
         let mut phases: Vec<f64> =
-            polar.into_iter().map(|polar| polar.map(|(_, phase)| phase)).collect::<Option<_>>()?;
+            found.into_iter().map(|polar| polar.map(|(_, phase)| phase)).collect::<Option<_>>()?;
         unwrap(&mut phases);
         let turns = TAU * ((first - phases.first()?) / TAU).round();
         phases.iter_mut().for_each(|phase| *phase += turns);

@@ -149,6 +149,11 @@ impl<'a> ReadModel<'a> {
             (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
         };
         let attitude = AttitudeResponse::new(response, output, &omega, settings.band)?;
+        // Of the 400 points of the line that the phase delay is read from, those between its ends; ends and crossings are of the model itself.
+        let attitude = match self.model.dynamics {
+            Dynamics::StateSpace(_) => attitude.sampled_by(&interpolated),
+            Dynamics::Measured(_) => attitude,
+        };
         let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
         let deviation = bands.map(|bands| PairBand { bands, pair });
         let deviation = deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation);

@@ -4,6 +4,7 @@ use super::*;
 use crate::assembly::{NamePattern, Row, folded_name, standard_patterns};
 use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
 use crate::identification::{FlightRecord, RecordUse};
+use nalgebra::DMatrix;
 use std::sync::Arc;
 
 /// What the names of folders and files say about a record.
@@ -193,10 +194,10 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
 
 /// Whether all samples are the same to the last bit; the clocks may differ.
 fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
-    let bits = |record: &FlightRecord| -> Vec<u64> {
-        record.inputs.iter().chain(&record.outputs).map(|sample| sample.to_bits()).collect()
+    let same = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
+        a.shape() == b.shape() && a.iter().zip(b.iter()).all(|(a, b)| a.to_bits() == b.to_bits())
     };
-    (a.inputs.shape(), a.outputs.shape()) == (b.inputs.shape(), b.outputs.shape()) && bits(a) == bits(b)
+    same(&a.inputs, &b.inputs) && same(&a.outputs, &b.outputs)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 mod text;
 
 use std::fmt;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -151,9 +152,10 @@ pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> R
     let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            let mut encoder = GzEncoder::new(file, Compression::default());
-            write_compact(&text, &mut encoder)?;
-            encoder.finish()?;
+            // The encoder clears a buffer of its own at each piece, and the pieces of JSON are single numbers and marks.
+            let mut pieces = BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
+            write_compact(&text, &mut pieces)?;
+            pieces.into_inner()?.finish()?;
             Ok(())
         } else {
             write_compact(&text, file)

@@ -521,10 +521,10 @@ const NAME_GAP: f32 = 14.0;
 
 /// Space at the right \[pt\].
 fn margin(scene: &BodeScene<'_>) -> f32 {
-    match (scene.names_curves, scene.rules.is_empty()) {
-        (true, _) => MARGINS[1],
-        (false, true) => MARGINS[0],
-        (false, false) => MARGINS[2],
+    match (scene.rules.is_empty(), scene.names_curves) {
+        (false, _) => MARGINS[2],
+        (true, true) => MARGINS[1],
+        (true, false) => MARGINS[0],
     }
 }
 

@@ -9,12 +9,18 @@ pub(super) fn bench(window: &Window) -> &AssemblyState {
     state(window).assembling.as_ref().expect("models are being imported")
 }
 
-pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
+/// Types over what a field holds, and leaves it open.
+pub(super) fn fill_in(window: &mut Window, field: &str, text: &str) {
     window.get_by_label(field).focus();
     window.run_steps(2);
     window.key_press_modifiers(Modifiers::COMMAND, Key::A);
     window.get_by_label(field).type_text(text);
     window.run_steps(2);
+}
+
+/// Types over what a field holds, and enters it; in a form that carries out what is asked for.
+pub(super) fn type_into(window: &mut Window, field: &str, text: &str) {
+    fill_in(window, field, text);
     window.key_press(Key::Enter);
     window.run_steps(3);
 }

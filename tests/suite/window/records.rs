@@ -11,7 +11,7 @@ use gdcm_core::study::setting;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
-use super::assembling::type_into;
+use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
 use super::*;
 use crate::made_up::{Flight, Gusts, stable_aircraft};
@@ -341,13 +341,13 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         ("Inputs of the dataset", "moment=M"),
         ("Outputs of the dataset", "q [rad/s]=nothing"),
     ] {
-        type_into(&mut window, field, text);
+        fill_in(&mut window, field, text);
     }
     click(&mut window, "Make the dataset");
     wait_until(&mut window, "an answer", |window| !state(window).records.wanted.problems.is_empty());
     let problems = state(&window).records.wanted.problems.join("\n");
     assert!(problems.contains("no column is the output q"), "{problems}");
-    // Enter in a field makes the dataset too, and the form may be gone before another click.
+    // Enter in a field makes the dataset too.
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
     wait_until(&mut window, "the dataset", |window| state(window).dataset().name() == "prbs");
     show(&mut window, View::Records);
@@ -429,7 +429,7 @@ fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
     give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
     wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
     click(&mut window, "Make a dataset of them…");
-    type_into(&mut window, "Inputs of the dataset", "M");
+    fill_in(&mut window, "Inputs of the dataset", "M");
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
     wait_until(&mut window, "the dataset", |window| state(window).dataset().inputs()[0].name == "M");
     show(&mut window, View::Records);
@@ -450,8 +450,7 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
     wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
     click(&mut window, "Make a dataset of them…");
-    type_into(&mut window, "Inputs of the dataset", "M=stick");
-    // Enter makes it.
+    fill_in(&mut window, "Inputs of the dataset", "M=stick");
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]=rate");
     let problems = |window: &Window| state(window).records.wanted.problems.join("\n");
     wait_until(&mut window, "the dataset", |window| {

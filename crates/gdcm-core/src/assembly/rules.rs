@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Row, RowRole, standard_on_axis};
 use crate::dataset::ChannelSide;
+use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;
 
 /// A channel of the dataset, and what files that do not say call its unit.
@@ -261,7 +262,7 @@ pub struct NamePattern {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatternError {
     /// It is no regular expression.
-    #[error("\"{pattern}\" is no regular expression: {reason}")]
+    #[error("{} is no regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
     Syntax {
         /// The text.
         pattern: String,
@@ -270,8 +271,10 @@ pub enum PatternError {
     },
     /// A group has a name that says nothing.
     #[error(
-        "\"{pattern}\": a group is named \"{group}\"; groups are condition, airspeed_kt, altitude, altitude_ft, weight, mass_kg, \
-             method, name, nominal, perturbed, identified, or by_ and a coordinate such as roll_deg"
+        "{}: a group is named {}; groups are condition, airspeed_kt, altitude, altitude_ft, weight, mass_kg, method, name, nominal, \
+         perturbed, identified, or by_ and a coordinate such as roll_deg",
+        quoted(pattern),
+        quoted(group)
     )]
     Group {
         /// The text.
@@ -514,6 +517,15 @@ mod tests {
         assert_eq!(row.condition, Some(7));
         let unknown = NamePattern::new("(?<speed>\\d+)").unwrap_err();
         assert!(unknown.to_string().contains("\"speed\""), "{unknown}");
-        assert!(matches!(NamePattern::new("(").unwrap_err(), PatternError::Syntax { .. }));
+        // However long a text is, and whatever stands in it, its message is a line.
+        for wrong in [
+            "(".to_owned(),
+            "(?<cond\u{7f}ition>a)".to_owned(),
+            "(th".repeat(40_000),
+            format!("(?<{}>a)", "g".repeat(900)),
+        ] {
+            let message = NamePattern::new(&wrong).unwrap_err().to_string();
+            assert!(message.len() < 500 && !message.contains(char::is_control), "{message:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! Models by their matrices.
 
 use gdcm_core::assembly::FoundModel;
+use gdcm_core::dataset::limits::MOST_STATES;
 use gdcm_core::dataset::{ModelDraft, Origin, Provenance, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
@@ -60,6 +61,9 @@ fn one(record: &Record<'_>, variable: &str, matrix: MatrixOf<'_>) -> Result<Foun
     let a = read("A", "a")?.ok_or_else(|| missing("A"))?;
     let b = read("B", "b")?.ok_or_else(|| missing("B"))?;
     let c = read("C", "c")?.ok_or_else(|| missing("C"))?;
+    at_most(a.nrows().max(a.ncols()), "states", "A")?;
+    at_most(b.ncols(), "inputs", "B")?;
+    at_most(c.nrows(), "outputs", "C")?;
     let mut notes = Vec::new();
     let d = match read("D", "d")? {
         Some(d) => d,
@@ -114,6 +118,14 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     match identified {
         true => Origin::Identified { method: None, order: None },
         false => Origin::Perturbed { perturbation: None },
+    }
+}
+
+/// Refuses more of something than a model of a dataset can have of states, before there is a matrix of so many rows and columns.
+fn at_most(count: usize, of: &str, place: &str) -> Result<(), String> {
+    match count > MOST_STATES {
+        true => Err(format!("{place}: {count} {of}; at most {MOST_STATES} are read")),
+        false => Ok(()),
     }
 }
 
@@ -200,6 +212,7 @@ impl Fraction {
             let first = polynomial.iter().position(|coefficient| *coefficient != 0.0).unwrap_or(polynomial.len());
             polynomial[first..].to_vec()
         };
+        at_most(denominator.len().saturating_sub(1), "states", place)?;
         let (numerator, denominator) = (strip(numerator), strip(denominator));
         let Some(&leading) = denominator.first() else { return Err(format!("{place}: the denominator is zero")) };
         if numerator.len() > denominator.len() {
@@ -232,6 +245,8 @@ impl Fraction {
 pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
     let (fractions, outputs, inputs) = fractions_of(record)?;
     let order: usize = fractions.iter().map(Fraction::order).sum();
+    at_most(order, "states", "all responses together")?;
+    at_most(inputs.max(outputs), "channels", "transfer functions")?;
     let mut a = DMatrix::zeros(order, order);
     let mut b = DMatrix::zeros(order, inputs);
     let mut c = DMatrix::zeros(outputs, order);
@@ -282,9 +297,10 @@ fn fractions_of(record: &Record<'_>) -> Result<(Vec<Fraction>, usize, usize), St
         let place = format!("response {}", index + 1);
         let poles = poles.get(index).ok_or_else(|| format!("{place}: no poles"))?;
         let gain = gains.get(index).ok_or_else(|| format!("{place}: no gain"))?;
-        let numerator: Vec<f64> =
-            polynomial(&complex_list_of("zeros", zeros)?).iter().map(|term| term * gain).collect();
-        Fraction::new(&numerator, &polynomial(&complex_list_of("poles", poles)?), &place)
+        let (zeros, poles) = (complex_list_of("zeros", zeros)?, complex_list_of("poles", poles)?);
+        at_most(zeros.len().max(poles.len()), "states", &place)?;
+        let numerator: Vec<f64> = polynomial(&zeros).iter().map(|term| term * gain).collect();
+        Fraction::new(&numerator, &polynomial(&poles), &place)
     };
     let fractions = zeros.iter().enumerate().map(fraction).collect::<Result<_, _>>()?;
     Ok((fractions, outputs, inputs))
@@ -375,5 +391,19 @@ mod transfer_function_tests {
         let variables = [row("num", &[1.0, 0.0, 0.0]), row("den", &[1.0, 1.0])];
         let error = transfer_function(&Record::of_variables(&variables), "").unwrap_err();
         assert!(error.contains("higher degree"), "{error}");
+    }
+
+    #[test]
+    fn more_states_than_a_dataset_holds_are_refused_before_there_is_a_matrix_of_them() {
+        let long = vec![1.0; 30_000];
+        let roots = [row("z", &[]), row("p", &long), row("k", &[1.0])];
+        for variables in [&[row("num", &[1.0]), row("den", &long)][..], &roots] {
+            let error = transfer_function(&Record::of_variables(variables), "").unwrap_err();
+            assert!(error.contains("states; at most 1000 are read"), "{error}");
+        }
+        let column = Variable { name: "C".into(), value: Value::Array(Array::matrix(30_000, 1, long.clone())) };
+        let variables = [row("A", &[-1.0]), row("B", &long), column];
+        let error = state_spaces(&Record::of_variables(&variables), "", false).remove(0).unwrap_err();
+        assert!(error.contains("B: 30000 inputs"), "{error}");
     }
 }

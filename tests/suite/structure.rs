@@ -12,7 +12,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("whole_number", &[]),
     ("dataset", &["units", "message_text", "whole_number"]),
     ("progress", &["dataset"]),
-    ("assembly", &["units", "whole_number", "dataset"]),
+    ("assembly", &["units", "message_text", "whole_number", "dataset"]),
     ("response", &["units", "dataset"]),
     ("fidelity", &["units", "dataset", "response"]),
     ("identification", &["units", "executor", "progress", "dataset", "response", "fidelity"]),

@@ -163,14 +163,6 @@ impl CurveDisplay {
         self.turns.clear();
         self.selected.clear();
     }
-
-    /// Turns by which a curve was moved up by hand.
-    pub fn turns_of(&self, condition: ConditionId, pair: Pair, curve: &CurveId) -> i32 {
-        if self.turns.is_empty() {
-            return 0;
-        }
-        self.turns.get(&(condition, pair, curve.clone())).copied().unwrap_or(0)
-    }
 }
 
 /// Units, read-outs, looks, and what is hidden.

@@ -8,7 +8,7 @@
 
 use nalgebra::DMatrix;
 
-use super::{CouplingError, CouplingFit, CouplingMatrices, CouplingProblem, fit_couplings};
+use super::{CouplingError, CouplingFit, CouplingProblem, fit_couplings};
 use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
 use crate::progress::{Progress, Shares, Untold};
@@ -74,19 +74,6 @@ impl CouplingBars {
         let mixing: Vec<_> = matrices().map(|of| of.normalised_mixing(airspeed_kt)).collect();
         let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
         Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile, quantile })
-    }
-
-    /// The entries of `M~`, whose bars these are, that are told from the identity: farther from it than their bar.
-    pub fn significant_mixing(&self, couplings: &CouplingMatrices, airspeed_kt: f64) -> DMatrix<bool> {
-        let mixing = couplings.normalised_mixing(airspeed_kt);
-        DMatrix::from_fn(mixing.nrows(), mixing.ncols(), |to, from| {
-            to != from && mixing[(to, from)].abs() > self.mixing[(to, from)]
-        })
-    }
-
-    /// The entries of `K` that are told from 0: farther from it than their bar.
-    pub fn significant_feedback(&self, couplings: &CouplingMatrices) -> DMatrix<bool> {
-        couplings.feedback().zip_map(&self.feedback, |entry, bar| entry.abs() > bar)
     }
 }
 

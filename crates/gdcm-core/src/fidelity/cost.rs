@@ -2,12 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Complex;
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::response::{PolarCurve, mean, median, weighted_median};
-use crate::units::ratio_to_db;
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g`.
 pub const MAGNITUDE_WEIGHT: f64 = 1.0;
@@ -15,8 +13,6 @@ pub const MAGNITUDE_WEIGHT: f64 = 1.0;
 pub const PHASE_WEIGHT: f64 = 0.0175;
 /// J up to which a model is acceptable.
 pub const ACCEPTABLE: f64 = 100.0;
-/// J up to which two responses are next to indistinguishable.
-pub const INDISTINGUISHABLE: f64 = 50.0;
 
 /// Factor before both parts of J.
 pub(super) const SCALE: f64 = 20.0;
@@ -74,12 +70,6 @@ impl Cost {
         scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
         let phase = SCALE * PHASE_WEIGHT * average.of(scratch, weights);
         Self { magnitude, phase }
-    }
-
-    /// J of the ratios of two responses, one for each frequency, with the median.
-    pub fn of_ratios(ratios: impl Iterator<Item = Complex<f64>> + Clone) -> Self {
-        let decibels = ratios.clone().map(|ratio| ratio_to_db(ratio.norm()));
-        Self::of(decibels, ratios.map(Complex::arg), None, CostAverage::Median, &mut Vec::new())
     }
 
     /// `J = J_mag + J_phase`.

@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::Complex;
 
 use crate::assembly::PhysicalUnit;
-use crate::dataset::{Band, Channel, MeasuredResponse, Pair};
+use crate::dataset::{Band, Channel};
 use crate::message_text::quoted;
-use crate::response::{between, interpolate, log_spaced, unwrap, wrap};
+use crate::response::{between, log_spaced, unwrap, wrap};
 use crate::units::{number, ratio_to_db};
 
 /// Frequencies on which sign changes are looked for.
@@ -73,11 +73,6 @@ impl AttitudeOutput {
 
 /// A response at any frequencies \[rad/s\]; not a number where it is not known.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
-
-/// A measured response, interpolated between its frequencies and not a number outside them (M2).
-pub fn measured_response(response: &MeasuredResponse, pair: Pair) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-    move |omega| interpolate(response, omega)[pair].clone()
-}
 
 /// The frequencies \[rad/s\] on which a model is searched for crossings: 400, logarithmic, of `band / 4` to `4 band`.
 pub fn search_frequencies(band: Band) -> Vec<f64> {

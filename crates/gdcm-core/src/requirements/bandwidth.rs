@@ -17,8 +17,8 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::{AttitudeOutput, AttitudeResponse, AttitudeResponseError, ResponseDeviation, measured_response};
-use crate::dataset::{Band, Channel, MeasuredResponse, Pair};
+use super::{AttitudeResponse, ResponseDeviation};
+use crate::dataset::Band;
 use crate::response::log_spaced;
 use crate::units::number;
 
@@ -201,20 +201,6 @@ impl Bandwidth {
             phase_delay_s: phase_delay.map(|(metric, _)| metric),
             phase_line: phase_delay.ok().map(|(_, line)| line),
         }
-    }
-
-    /// Of one measured response, interpolated inside its frequencies; the band of `settings` is where it is trusted.
-    ///
-    /// # Errors
-    /// [`AttitudeResponseError`] where the output is neither a rate nor an attitude, or the response is nowhere defined.
-    pub fn of_measured(
-        measured: &MeasuredResponse,
-        (pair, output): (Pair, &Channel),
-        settings: &BandwidthSettings,
-    ) -> Result<Self, AttitudeResponseError> {
-        let response = measured_response(measured, pair);
-        let attitude = AttitudeResponse::new(&response, AttitudeOutput::of(output)?, measured.omega(), settings.band)?;
-        Ok(Self::of(&attitude, settings, None))
     }
 
     /// Whether the gain margin comes before the phase margin: the standard warns of it, whatever the bandwidth is.

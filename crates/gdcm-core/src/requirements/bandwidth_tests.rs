@@ -12,10 +12,6 @@ use crate::response::{GainDelay, log_spaced};
 
 const ONLY: Pair = Pair { output: 0, input: 0 };
 
-fn roll_rate() -> Channel {
-    Channel::new("P", "deg/s")
-}
-
 fn band() -> Band {
     Band::new(0.5, 12.0).unwrap()
 }
@@ -198,7 +194,11 @@ fn a_measurement_is_never_extrapolated() {
         let table =
             |part: fn(&Complex<f64>) -> f64| PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>());
         let measured = MeasuredResponse::new(omega, &table(|value| value.re), &table(|value| value.im), None).unwrap();
-        Bandwidth::of_measured(&measured, (ONLY, &roll_rate()), &settings(CommandType::Rate)).unwrap()
+        let omega = measured.omega().to_vec();
+        let model = SampledModel::of(&Dynamics::Measured(measured), band());
+        let response = model.exact(ONLY, GainDelay::NONE);
+        let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
+        Bandwidth::of(&attitude, &settings(CommandType::Rate), None)
     };
     // omega_180 is 3.79 rad/s.
     let whole = found(12.0);

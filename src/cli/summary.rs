@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use gdcm_core::correction::{ChannelCorrection, GainSource, Outcome};
+use gdcm_core::correction::{ChannelCorrection, ChannelLeads, GainSource, LeadPrice, Outcome};
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::schedule::{Schedule, ScheduledQuantity};
 use gdcm_core::study::{
     Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, ConventionDoubt,
-    PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_words, remarks, scatter_table,
+    PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_limit_words, remarks,
+    scatter_table,
 };
 use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::{number, s_to_ms};
+use gdcm_core::units::{number, s_to_ms, signed};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
 use super::{by_words, indented, keep_caution, labelled, listed, listed_conditions};
@@ -177,7 +178,8 @@ fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
 fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let columns =
         ["response", "held", "G", "± %", "net gain", "± %", "D [ms]", "± ms", "net delay [ms]", "J before", "J after"];
-    let mut table = Table::new("", columns);
+    let price = result.compensated.as_ref().and_then(|compensated| LeadPrice::of(&compensated.leads));
+    let mut table = Table::new("", columns.map(str::to_owned).into_iter().chain(price.as_ref().map(price_heading)));
     let dataset = &analysis.study.dataset;
     let half = |scalar: Scalar, factor: f64| {
         let uncertainty = analysis.uncertainty.as_ref()?;
@@ -185,7 +187,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     };
     for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
-        table.row([
+        let cells = [
             sanitized(&dataset.pair_name(pair)),
             if result.held()[pair] { "yes" } else { "no" }.to_owned(),
             value(result.wanted_gain(pair), 3),
@@ -197,9 +199,16 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
             value(Some(s_to_ms(result.correction.net_delay_s(pair))), 1),
             value(cost.map(|cost| cost.uncorrected.total()), 1),
             value(cost.map(|cost| cost.corrected.total()), 1),
-        ]);
+        ];
+        let price_db = price.as_ref().map(|price| signed(price.of_pair_db(pair), 1));
+        table.row(cells.into_iter().chain(price_db));
     }
     table
+}
+
+/// What the leads add above the band, as the heading of a column.
+fn price_heading(price: &LeadPrice) -> String {
+    format!("dB at {} rad/s", number(price.above_rad_s()))
 }
 
 fn value(value: Option<f64>, digits: usize) -> String {
@@ -213,6 +222,9 @@ fn value(value: Option<f64>, digits: usize) -> String {
 
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
+    if let Some(compensated) = &result.compensated {
+        return indented(&lead_table(dataset, correction, &compensated.leads), 2);
+    }
     let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| sanitized(&channel.name));
     let gains = correction.input_gains.iter().chain(&correction.output_gains);
     let gains: Vec<String> =
@@ -222,13 +234,29 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
         let words = value(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
+    detail_list("gains", gains) + &detail_list("delays", delays.collect())
+}
 
-    let label = if correction.leads.is_some() { "delay/lead" } else { "delays" };
-    let mut text = detail_list("gains", gains) + &detail_list(label, delays.collect());
-    for words in lead_words(&analysis.study, result, analysis.uncertainty.as_deref()) {
-        text.push_str(&detail("lead", &sanitized(&words)));
+/// Gain, delay or lead of each channel, and the servos that its filter stands for: as if the one were replaced by the other (M15).
+fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
+    let columns = ["channel", "k", "delay/lead [ms]", "servo of [rad/s]", "replaced by"];
+    let price = LeadPrice::of(leads);
+    let mut table = Table::new("", columns.map(str::to_owned).into_iter().chain(price.as_ref().map(price_heading)));
+    let (inputs, outputs) = dataset.names_of_channels();
+    for (channel, delay_s) in correction.signed_delays_s().iter() {
+        let filter = leads.filters()[channel];
+        let cells = [
+            sanitized(&channel.name(&inputs, &outputs)),
+            value(Some(correction.gain(channel)), 3),
+            value(Some(s_to_ms(*delay_s)), 1),
+            value(filter.map(|filter| filter.zero_rad_s()), 0),
+            value(filter.map(|filter| filter.lag_rad_s()), 0),
+        ];
+        let price_db =
+            price.as_ref().map(|price| filter.map_or("-".to_owned(), |_| signed(price.gains_db[channel], 1)));
+        table.row(cells.into_iter().chain(price_db));
     }
-    text
+    table
 }
 
 /// What most conditions have in one table with one sentence, and each other caution once with the conditions that it is of.
@@ -238,32 +266,30 @@ fn cautions_section(analysis: &Analysis) -> String {
         let (id, said) = (result.condition.id(), remarks(&analysis.study, result, None));
         // What is said of signs and units stands above all conditions.
         let cautions = said.into_iter().skip(result.doubts.len()).filter(|of| of.kind == RemarkKind::Caution);
-        let cautions: Vec<Remark> = cautions.collect();
-        let needs_lead = cautions.iter().any(|of| matches!(of.repeated, Some(Repeated::NeedsLead(_))));
-        // What is common to all is said beside what each needs.
-        let is_repeated = |of: &Remark| match of.repeated {
-            Some(Repeated::CommonLead(_)) => needs_lead,
-            _ => of.repeated.is_some(),
-        };
-        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.into_iter().partition(is_repeated);
-        if !repeated.is_empty() {
-            rows.push((id, repeated.into_iter().filter_map(|of| of.repeated).collect()));
-        }
-        others.extend(rest.into_iter().map(|of| (id, of.text)));
+        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.partition(|of| of.repeated.is_some());
+        rows.extend((!repeated.is_empty()).then_some((id, repeated)));
+        others.extend(rest.into_iter().map(|of| of.text).chain(lead_limit_words(result)).map(|text| (id, text)));
     }
-    let mut text = if rows.is_empty() { String::new() } else { repeated_table(analysis, &rows) };
-    for (conditions, words) in by_words(others) {
+    let text = match &rows[..] {
+        [] => String::new(),
+        // Of one condition a sentence says as much.
+        [(id, alone)] if alone.len() == 1 => {
+            others.insert(0, (*id, alone[0].text.clone()));
+            String::new()
+        }
+        rows => repeated_table(analysis, rows),
+    };
+    by_words(others).into_iter().fold(text, |text, (conditions, words)| {
         keep_caution(&conditions, &words);
         let words = format!("{}: {words}", listed_conditions(&conditions));
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
-    }
-    text
+        text + &labelled(0, "Caution", LABEL, &sanitized(&words))
+    })
 }
 
-/// A row for each condition and a column for each response with something to say.
-fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) -> String {
+/// A row for each condition; a column for each response that needs lead or is farther from flight, and for what else is said.
+fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> String {
     let dataset = &analysis.study.dataset;
-    let all = || rows.iter().flat_map(|(_, row)| row);
+    let all = || rows.iter().flat_map(|(_, row)| row).filter_map(|of| of.repeated.as_ref());
     let is_farther = |of: &Repeated, pair: Pair| matches!(of, Repeated::Farther(pairs) if pairs.contains(&pair));
     let lead_ms = |of: &Repeated, pair: Pair| match of {
         Repeated::NeedsLead(needed) => needed.iter().find(|(at, _)| *at == pair).map(|(_, lead_ms)| lead_ms.clone()),
@@ -271,41 +297,62 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Repeated>)]) ->
     };
     let is_told = |pair: &Pair| all().any(|of| is_farther(of, *pair) || lead_ms(of, *pair).is_some());
     let pairs: Vec<Pair> = dataset.on_axis().pairs().filter(is_told).collect();
-    let has_offers = all().any(|of| matches!(of, Repeated::LeadsOffered(_)));
-    let mut sentence =
-        "held responses need lead [ms], because the physics model lags, which a delay cannot give".to_owned();
+    let mut sentences = Vec::new();
+    if all().any(|of| matches!(of, Repeated::NeedsLead(_))) {
+        sentences.push("held responses need lead [ms], because the physics model lags, which a delay cannot give");
+    }
     if all().any(|of| matches!(of, Repeated::Farther(_))) {
-        sentence += "; * is farther from flight (larger J) than without a correction";
+        sentences.push("* is farther from flight (larger J) than without a correction");
     }
-    let common = |of: &Repeated| if let Repeated::CommonLead(lead_ms) = of { Some(lead_ms.clone()) } else { None };
-    let has_common = all().any(|of| common(of).is_some());
-    if has_common {
-        sentence += "; where all want about the same (column all), check first the time alignment of the records, the simulation's \
-                     integration and sampling delay, then servo and sensor models: a common lag is better taken out where it arises \
-                     than corrected";
-    }
-    if has_offers {
-        sentence += "; the last column is the mean J of the held responses, and what it would be with a delay or lead in each channel";
-    }
+    let columns: Vec<&(&str, &str, CellOf)> =
+        REPEATED.iter().filter(|(.., cell)| all().any(|of| cell(of, dataset).is_some())).collect();
+    sentences.extend(columns.iter().map(|(_, sentence, _)| *sentence));
     let headings = std::iter::once("condition".to_owned()).chain(pairs.iter().map(|pair| dataset.pair_name(*pair)));
-    let headings = headings.chain(has_common.then(|| "all".to_owned()));
-    let mut table = Table::new("", headings.chain(has_offers.then(|| "J with leads".to_owned())));
+    let mut table = Table::new("", headings.chain(columns.iter().map(|(heading, ..)| (*heading).to_owned())));
     for (id, row) in rows {
-        let cell = |pair: &Pair| {
-            let lead = row.iter().find_map(|of| lead_ms(of, *pair)).unwrap_or_else(|| "-".to_owned());
-            if row.iter().any(|of| is_farther(of, *pair)) { format!("{lead} *") } else { lead }
+        let row = || row.iter().filter_map(|of| of.repeated.as_ref());
+        let or_none = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_owned());
+        let of_pair = |pair: &Pair| {
+            let lead = or_none(row().find_map(|of| lead_ms(of, *pair)));
+            if row().any(|of| is_farther(of, *pair)) { format!("{lead} *") } else { lead }
         };
-        let offer = row.iter().find_map(|of| match of {
-            Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
-            _ => None,
-        });
-        let all = has_common.then(|| row.iter().find_map(common).unwrap_or_else(|| "-".to_owned()));
-        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(cell)).chain(all).chain(offer));
+        let others = columns.iter().map(|(.., cell)| or_none(row().find_map(|of| cell(of, dataset))));
+        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(of_pair)).chain(others));
     }
     let conditions: Vec<ConditionId> = rows.iter().map(|(id, _)| *id).collect();
+    let sentence = sentences.join("; ");
     keep_caution(&conditions, &sentence);
     labelled(0, "Cautions", LABEL, &format!("{sentence}:")) + &indented(&table, 2)
 }
+
+/// What a repeated remark has for a column.
+type CellOf = fn(&Repeated, &Dataset) -> Option<String>;
+
+/// Columns for what conditions have in common: heading, sentence, cell.
+const REPEATED: [(&str, &str, CellOf); 3] = [
+    (
+        "all",
+        "where all want about the same lead (column all [ms]), check first the time alignment of the records, the simulation's \
+         integration and sampling delay, then servo and sensor models: a common lag is better taken out where it arises than corrected",
+        |of, _| if let Repeated::CommonLead(lead_ms) = of { Some(lead_ms.clone()) } else { None },
+    ),
+    (
+        "gain",
+        "column gain [dB] is what the lead filters raise the gain within the band by at most, which the gains take back",
+        |of, dataset| match of {
+            Repeated::RaisedGain(most_db, pair) => Some(format!("{most_db} ({})", dataset.pair_name(*pair))),
+            _ => None,
+        },
+    ),
+    (
+        "J with leads",
+        "the last column is the mean J of the held responses, and what it would be with a delay or lead in each channel",
+        |of, _| match of {
+            Repeated::LeadsOffered([without, with]) => Some(format!("{without} → {with}")),
+            _ => None,
+        },
+    ),
+];
 
 /// What could not be matched and why, entry by entry, and what is not proven.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {

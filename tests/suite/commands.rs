@@ -188,7 +188,11 @@ fn the_phase_is_corrected_as_an_option_says() {
         "G from the mean over all kept pairs, without effect: with leads",
         "Phase",
         "corrected by a delay or a lead filter a channel: order 2, n 3, R_max 10",
-        "as if a servo of 18 rad/s",
+        "channel k delay/lead [ms] servo of [rad/s] replaced by dB at 120 rad/s",
+        // What every condition has is said once.
+        "where all want about the same lead (column all [ms]), check first the time alignment",
+        "condition PED → NY all gain",
+        "conditions 1, 2, 3, 5, 6, 7, 8, 9, 10, 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
     ] {
         assert!(ended.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{}", ended.out);
     }

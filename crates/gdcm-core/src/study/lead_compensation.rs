@@ -143,12 +143,15 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         });
         format!("{name}: {}{}", servo_words(filter), at_above.unwrap_or_default())
     });
-    let states: usize = filters().map(|(_, filter)| filter.order().number()).sum();
-    let limit = price.as_ref().map(|price| {
-        let top = number(price.limit_rad_s);
-        format!("The leads add {states} states. Do not use the corrected model above {top} rad/s.")
-    });
-    result.held().marked().filter_map(wants).chain(replaced).chain(limit).collect()
+    result.held().marked().filter_map(wants).chain(replaced).chain(lead_limit_words(result)).collect()
+}
+
+/// How many states the leads add, and where the corrected model ends to be valid.
+pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
+    let leads = &result.compensated.as_ref()?.leads;
+    let top = number(LeadPrice::of(leads)?.limit_rad_s);
+    let states: usize = leads.filters().iter().filter_map(|(_, filter)| Some((*filter)?.order().number())).sum();
+    Some(format!("The leads add {states} states. Do not use the corrected model above {top} rad/s."))
 }
 
 /// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
@@ -173,7 +176,7 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
     if study.settings.phase == PhaseCorrection::Lead {
         remarks.extend(achieved(study, result));
-        remarks.extend(first_order_words(study, result).map(caution));
+        remarks.extend(raised_gain(study, result));
     }
     remarks.extend(not_of_a_delay(study, result).map(caution));
     remarks.extend(result.offer.map(|offer| {
@@ -225,7 +228,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
 }
 
 /// What filters of first order add to the gain within the band, which the gains take back.
-fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String> {
+fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
         let rise = result.comparison.delta.gain[pair]? / compensated.gain[pair]?;
@@ -233,11 +236,12 @@ fn first_order_words(study: &Study, result: &ConditionAnalysis) -> Option<String
     });
     let (pair, rise_db) = rises.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
     (rise_db.abs() >= 0.05).then(|| {
-        format!(
-            "The lead filters raise the gain within the band, which the gains take back: by up to {} dB ({}).",
-            telling(rise_db.abs(), 1),
-            study.dataset.pair_name(pair)
-        )
+        let most_db = telling(rise_db.abs(), 1);
+        let name = study.dataset.pair_name(pair);
+        let text = format!(
+            "The lead filters raise the gain within the band, which the gains take back: by up to {most_db} dB ({name})."
+        );
+        Remark::new(RemarkKind::Caution, text).repeated(Repeated::RaisedGain(most_db, pair))
     })
 }
 

@@ -44,6 +44,8 @@ pub enum Repeated {
     CommonLead(String),
     /// Held responses are farther from flight than without a correction.
     Farther(Vec<Pair>),
+    /// By how much the lead filters raise the gain within the band at most \[dB\], and of which response.
+    RaisedGain(String, Pair),
     /// What the mean J of the held responses is without leads, and would be with them.
     LeadsOffered([String; 2]),
 }

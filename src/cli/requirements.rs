@@ -1,5 +1,6 @@
 //! `gdcm requirements`: what a qualification asks of the models of every condition, written as files, with a short table.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
@@ -99,23 +100,44 @@ fn both_numbers(finding: &BandwidthFinding) -> String {
 fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String {
     let same_response = |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
     let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-    let (known, unknown): (Vec<&[BandwidthFinding]>, Vec<_>) =
-        requirements.bandwidth.chunk_by(same_response).partition(|of| of.iter().any(has_number));
+    let responses = || requirements.bandwidth.chunk_by(same_response);
     let name = |of: &[BandwidthFinding]| analysis.study.dataset.pair_name(of[0].pair);
-    let table = bandwidth_table(known.into_iter().map(|of| (name(of), of)));
+    let known = responses().filter(|of| of.iter().any(has_number));
+    let table = bandwidth_table(known.map(|of| (name(of), of)));
     let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
     let star = if is_marked { "; * rests on the response above the band" } else { "" };
     let mut text = labelled(0, "Bandwidth", LABEL, &format!("of the attitude [rad/s] / phase delay [ms]{star}:"));
     if !table.rows.is_empty() {
         text.push_str(&indented(&table, 2));
     }
-    let why = |of: &[BandwidthFinding]| of[0].absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
-    let reasons = unknown.into_iter().map(|of| (of[0].condition, format!("{}: {}", name(of), why(of))));
-    for (conditions, words) in by_words(reasons) {
-        let words = format!("{}: {words}", listed_conditions(&conditions));
-        text.push_str(&labelled(0, "No bandwidth", LABEL, &sanitized(&words)));
+    for (label, quantity) in [("No bandwidth", "omega_bw_rad_s"), ("No delay", "phase_delay_s")] {
+        let absent = responses().flat_map(|of| absent_words(&name(of), of, quantity));
+        // Of a response without any number, one reason does for both.
+        let absent = absent.filter(|(of, _)| quantity == "omega_bw_rad_s" || has_number(of));
+        for (conditions, words) in by_words(absent.map(|(of, words)| (of.condition, words))) {
+            let words = format!("{}: {words}", listed_conditions(&conditions));
+            text.push_str(&labelled(0, label, LABEL, &sanitized(&words)));
+        }
     }
     text
+}
+
+/// Why a response lacks a number, once for each reason, with the roles that it is of where it is not of all: "LON → Q (physics, corrected): …".
+fn absent_words<'a>(
+    name: &str,
+    findings: &'a [BandwidthFinding],
+    quantity: &str,
+) -> Vec<(&'a BandwidthFinding, String)> {
+    let reasons: BTreeSet<&String> = findings.iter().filter_map(|of| of.absent.get(quantity)).collect();
+    let told = |why: &String| {
+        let of: Vec<&BandwidthFinding> = findings.iter().filter(|of| of.absent.get(quantity) == Some(why)).collect();
+        let roles = match of.len() == findings.len() {
+            true => String::new(),
+            false => format!(" ({})", of.iter().map(|of| of.role.name()).collect::<Vec<_>>().join(", ")),
+        };
+        (of[0], format!("{name}{roles}: {why}"))
+    };
+    reasons.into_iter().map(told).collect()
 }
 
 /// A row for each response, with its name and the numbers of each role.

@@ -52,10 +52,15 @@ fn hanging<'w>(indent: usize, label: &str, width: usize, pieces: impl Iterator<I
     text
 }
 
-/// "condition 3", "conditions 3, 4, 7".
+/// "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three in a row or more by their ends.
 pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
-    let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
-    format!("condition{} {}", if ids.len() == 1 { "" } else { "s" }, ids.join(", "))
+    let runs = conditions.chunk_by(|one, next| one.0.checked_add(1) == Some(next.0));
+    let words = runs.flat_map(|run| match run {
+        [first, _, .., last] => vec![format!("{first} to {last}")],
+        few => few.iter().map(ToString::to_string).collect(),
+    });
+    let several = if conditions.len() == 1 { "" } else { "s" };
+    format!("condition{several} {}", words.collect::<Vec<_>>().join(", "))
 }
 
 /// Words about conditions, each once with all conditions that it is said of, in the order in which they were said first.
@@ -81,6 +86,9 @@ mod tests {
         let said = by_words(said.map(|(id, words)| (ConditionId(id), words.to_owned())));
         let lines: Vec<String> = said.iter().map(|(of, words)| format!("{}: {words}", listed_conditions(of))).collect();
         assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
+        let listed = |ids: &[i64]| listed_conditions(&ids.iter().copied().map(ConditionId).collect::<Vec<_>>());
+        assert_eq!(listed(&[1, 2, 4, 5, 6, 9]), "conditions 1, 2, 4 to 6, 9");
+        assert_eq!(listed(&[i64::MAX, i64::MIN, 3]), format!("conditions {}, {}, 3", i64::MAX, i64::MIN));
     }
 
     #[test]

@@ -192,7 +192,7 @@ fn the_phase_is_corrected_as_an_option_says() {
         // What every condition has is said once.
         "where all want about the same lead (column all [ms]), check first the time alignment",
         "condition PED → NY all gain",
-        "conditions 1, 2, 3, 5, 6, 7, 8, 9, 10, 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
+        "conditions 1 to 3, 5 to 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
     ] {
         assert!(ended.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{}", ended.out);
     }

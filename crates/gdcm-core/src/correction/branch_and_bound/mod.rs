@@ -29,7 +29,7 @@
 //! the bound needs no convergence; its rounding is counted term by term ([`Rounded`]).
 
 mod newton;
-mod node_tests;
+mod node_exclusion;
 mod objective;
 mod search;
 mod term;
@@ -38,7 +38,7 @@ mod tests;
 mod underestimator;
 
 pub(crate) use newton::*;
-use node_tests::*;
+use node_exclusion::*;
 pub(crate) use objective::*;
 pub use search::*;
 pub(crate) use term::*;

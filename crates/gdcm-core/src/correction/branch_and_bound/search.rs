@@ -49,7 +49,7 @@ pub(crate) fn search(
 
 struct Search<'a> {
     objective: &'a Objective,
-    tests: NodeTests<'a>,
+    exclusion: NodeExclusion<'a>,
     budget: ProofBudget,
     floor: f64,
     effort: &'a Effort<'a>,
@@ -76,7 +76,7 @@ impl<'a> Search<'a> {
         let scales = objective.scales();
         Self {
             objective,
-            tests: NodeTests::new(objective),
+            exclusion: NodeExclusion::new(objective),
             budget,
             floor,
             effort,
@@ -246,25 +246,25 @@ impl<'a> Search<'a> {
     fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
         let (scales, _) = self.minima.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let hull = region.hull(scales);
-        self.effort.spend(2 * self.tests.work());
-        if !(exact && region.holds(scales) || self.tests.is_convex(&hull)) {
+        self.effort.spend(2 * self.exclusion.work());
+        if !(exact && region.holds(scales) || self.exclusion.is_convex(&hull)) {
             return None;
         }
         let mut at = Expansion::zero(scales.len());
         self.objective.expand(scales, Curvature::True, &mut at);
         hull.write_box(&mut self.lower, &mut self.upper);
         let tangent = tangent_bound(scales, &at, (&self.lower, &self.upper));
-        Some(self.tests.bound_at(scales, &at).map_or(tangent, |quadratic| quadratic.max(tangent)))
+        Some(self.exclusion.bound_at(scales, &at).map_or(tangent, |quadratic| quadratic.max(tangent)))
     }
 
     /// Whether the node holds no local minimum, or none but a known one.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
-        self.effort.spend(self.tests.work());
+        self.effort.spend(self.exclusion.work());
         let holds_only = |(scales, _): &(Vec<f64>, f64)| {
-            self.effort.spend(2 * self.tests.work());
-            self.tests.has_only(region, scales)
+            self.effort.spend(2 * self.exclusion.work());
+            self.exclusion.has_only(region, scales)
         };
-        self.tests.has_no_minimum(region) || self.minima.iter().any(holds_only)
+        self.exclusion.has_no_minimum(region) || self.minima.iter().any(holds_only)
     }
 
     /// Branches where the node's bound loses most or, where nothing is lost or the best is already proven, so that what is

@@ -194,7 +194,7 @@ proptest! {
         Newton::new(minimum.len()).minimise(&sample.objective, bounds, &mut minimum, &effort, |_, _| false);
         let mut at = Expansion::zero(minimum.len());
         sample.objective.expand(&minimum, Curvature::True, &mut at);
-        if let Some(bound) = NodeTests::new(&sample.objective).bound_at(&minimum, &at) {
+        if let Some(bound) = NodeExclusion::new(&sample.objective).bound_at(&minimum, &at) {
             for (step, shares) in others.iter().enumerate() {
                 let width = 10f64.powi(-3 * step as i32 - 2);
                 let ends = bounds.0.iter().zip(bounds.1).enumerate();

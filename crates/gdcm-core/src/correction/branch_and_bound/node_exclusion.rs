@@ -1,11 +1,11 @@
-//! The tests of a node: the monotonicity test (no minimum is there) and the convexity test (no other than a known one).
+//! What excludes a node: the monotonicity test (no minimum is there) and the convexity test (no other than a known one).
 
 use nalgebra::DMatrix;
 
 use super::{DifferenceBounds, Expansion, Objective, Range, Term, quadratic_bound};
 
 /// The objective with what decides about its local minima.
-pub(super) struct NodeTests<'a> {
+pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
     /// The scale against which each one is measured: the ground, or the first of a piece that is not tied to it.
     base: Vec<usize>,
@@ -14,7 +14,7 @@ pub(super) struct NodeTests<'a> {
     floating: Vec<Vec<usize>>,
 }
 
-impl<'a> NodeTests<'a> {
+impl<'a> NodeExclusion<'a> {
     pub(super) fn new(objective: &'a Objective) -> Self {
         let ground = objective.ground();
         let mut base = vec![ground; objective.scales()];

@@ -502,15 +502,14 @@ fn frame<'a>(
     let (is_named, values) = (!names.is_empty(), Ticks::Decimal(gap));
     let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
     let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
-    let count = names.len();
+    let (count, digit) = (names.len(), f64::from(width("0")));
     let along = match panel.x.scale {
         Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
-        // Numbers of three digits beside one another take more room than lines above one another.
         Scale::Linear | Scale::Degrees => Ticks::Decimal(TICK_GAP),
     };
     let spacer = move |input: GridInput| match is_named {
         true => named_marks(&input, count, widest),
-        false => along.marks(input.bounds, input.base_step_size),
+        false => marks_beside(along, &input, digit),
     };
     let is_labelled = is_last && !scene.is_compact;
     let (words, height) = if is_labelled { (panel.x.label.as_str(), LABELLED_HEIGHT) } else { ("", TICKS_HEIGHT) };
@@ -535,6 +534,18 @@ fn frame<'a>(
             false => Vec::new(),
         });
     if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
+}
+
+/// Marks whose numbers stand beside one another, `digit` points a letter: so far apart that the widest has room.
+fn marks_beside(along: Ticks, input: &GridInput, digit: f64) -> Vec<GridMark> {
+    let marks = |along: Ticks| along.marks(input.bounds, input.base_step_size);
+    let found = marks(along);
+    let letters = found.iter().map(|mark| along.text(*mark).chars().count()).max().unwrap_or(0);
+    let needed = (letters as f64 + 0.6) * digit;
+    match along {
+        Ticks::Decimal(gap) if gap < needed => marks(Ticks::Decimal(needed)),
+        _ => found,
+    }
 }
 
 /// One mark for each name; where they are too wide, for every second, third … one.

@@ -149,6 +149,17 @@ impl Ticks {
         found.into_iter().map(mark).collect()
     }
 
+    /// [`Self::marks`] whose numbers stand beside one another, `digit` points a letter: so far apart that the widest has room.
+    pub fn marks_beside(self, bounds: (f64, f64), units_per_point: f64, digit: f64) -> Vec<GridMark> {
+        let found = self.marks(bounds, units_per_point);
+        let letters = found.iter().map(|mark| self.text(*mark).chars().count()).max().unwrap_or(0);
+        let needed = (letters as f64 + 0.6) * digit;
+        match self {
+            Self::Decimal(gap) if gap < needed => Self::Decimal(needed).marks(bounds, units_per_point),
+            _ => found,
+        }
+    }
+
     /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
     pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
         move |input| self.marks(input.bounds, input.base_step_size)
@@ -204,6 +215,17 @@ mod tests {
         assert_eq!(values(Ticks::Degrees, (-330.0, 60.0), 200.0), [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]);
         assert_eq!(values(Ticks::Degrees, (-200.0, 10.0), 250.0), [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]);
         assert_eq!(values(Ticks::Degrees, (-900.0, 0.0), 200.0), [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]);
+    }
+
+    #[test]
+    fn numbers_beside_one_another_have_the_room_of_the_widest() {
+        let values = |bounds: (f64, f64), points: f64| -> Vec<f64> {
+            let marks = Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
+            marks.into_iter().map(|mark| mark.value).collect()
+        };
+        // "−120" and "−110" took 29 points of 27.
+        assert_eq!(values((-130.0, 8.0), 360.0), [-120.0, -100.0, -80.0, -60.0, -40.0, -20.0, 0.0]);
+        assert_eq!(values((40.0, 145.0), 150.0), [40.0, 60.0, 80.0, 100.0, 120.0, 140.0]);
     }
 
     #[test]

@@ -509,7 +509,7 @@ fn frame<'a>(
     };
     let spacer = move |input: GridInput| match is_named {
         true => named_marks(&input, count, widest),
-        false => marks_beside(along, &input, digit),
+        false => along.marks_beside(input.bounds, input.base_step_size, digit),
     };
     let is_labelled = is_last && !scene.is_compact;
     let (words, height) = if is_labelled { (panel.x.label.as_str(), LABELLED_HEIGHT) } else { ("", TICKS_HEIGHT) };
@@ -534,18 +534,6 @@ fn frame<'a>(
             false => Vec::new(),
         });
     if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
-}
-
-/// Marks whose numbers stand beside one another, `digit` points a letter: so far apart that the widest has room.
-fn marks_beside(along: Ticks, input: &GridInput, digit: f64) -> Vec<GridMark> {
-    let marks = |along: Ticks| along.marks(input.bounds, input.base_step_size);
-    let found = marks(along);
-    let letters = found.iter().map(|mark| along.text(*mark).chars().count()).max().unwrap_or(0);
-    let needed = (letters as f64 + 0.6) * digit;
-    match along {
-        Ticks::Decimal(gap) if gap < needed => marks(Ticks::Decimal(needed)),
-        _ => found,
-    }
 }
 
 /// One mark for each name; where they are too wide, for every second, third … one.

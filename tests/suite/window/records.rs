@@ -414,6 +414,18 @@ pub(super) fn rows_shown(window: &Window) -> usize {
     state.records.conditions.get(&state.condition().id()).map_or(0, |records| records.rows.len())
 }
 
+/// A window that makes a dataset of two records in a folder, of these channels.
+fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
+    let mut window = window();
+    show(&mut window, View::Records);
+    give(&mut window, RecordsCommand::Add(vec![folder.to_owned()]));
+    wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
+    click(&mut window, "Make a dataset of them…");
+    fill_in(&mut window, "Inputs of the dataset", inputs);
+    type_into(&mut window, "Outputs of the dataset", outputs);
+    window
+}
+
 #[test]
 fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
@@ -424,13 +436,7 @@ fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
     for (file, step_s) in [("good.csv", 0.02), ("slow.csv", 20.0)] {
         std::fs::write(folder.path().join(file), "time [s],M,q [rad/s]\n".to_owned() + &rows(step_s)).unwrap();
     }
-    let mut window = window();
-    show(&mut window, View::Records);
-    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
-    wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
-    click(&mut window, "Make a dataset of them…");
-    fill_in(&mut window, "Inputs of the dataset", "M");
-    type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
+    let mut window = making_a_dataset(folder.path(), "M", "q [rad/s]");
     wait_until(&mut window, "the dataset", |window| state(window).dataset().inputs()[0].name == "M");
     show(&mut window, View::Records);
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
@@ -445,13 +451,7 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     let rate = (0..1000).map(|k| line(k, 0.02, |k| (0.1 * k).cos())).collect::<String>();
     std::fs::write(folder.path().join("stick.csv"), "timestamp,value\n".to_owned() + &stick).unwrap();
     std::fs::write(folder.path().join("rate.csv"), "timestamp,value\n".to_owned() + &rate).unwrap();
-    let mut window = window();
-    show(&mut window, View::Records);
-    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
-    wait_until(&mut window, "the records", |window| rows_shown(window) == 2);
-    click(&mut window, "Make a dataset of them…");
-    fill_in(&mut window, "Inputs of the dataset", "M=stick");
-    type_into(&mut window, "Outputs of the dataset", "q [rad/s]=rate");
+    let mut window = making_a_dataset(folder.path(), "M=stick", "q [rad/s]=rate");
     let problems = |window: &Window| state(window).records.wanted.problems.join("\n");
     wait_until(&mut window, "the dataset", |window| {
         assert_eq!(problems(window), "");

@@ -139,7 +139,8 @@ impl Condition {
     }
 
     /// The same condition with these models for its identified bundle, and these flight records, each in place of the one of its
-    /// name, or else of the same samples of the same file, or behind the others. A record of which parts come is no longer used, for evidence counts once.
+    /// name, or else of the same samples of the same file, or behind the others. A record of which parts come is no longer used, for
+    /// evidence counts once.
     ///
     /// # Errors
     /// Those of [`Condition::new`] and [`Condition::with_records`].

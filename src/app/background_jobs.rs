@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use gdcm_core::correction::Outcome;
 use gdcm_core::executor::Executor;
-use gdcm_core::study::{CURVE_POINTS, CurvesJob, Engine, Job, ProofJob, TogglesJob, UncertaintyJob, curves_band};
+use gdcm_core::study::{
+    CURVE_POINTS, CurvesJob, Engine, Job, KnownModels, ProofJob, TogglesJob, UncertaintyJob, curves_band,
+};
 
 use super::{Fault, GdcmApp, JobQueue, ReplySender};
 use crate::executor::Pool;
@@ -79,9 +81,11 @@ pub(super) struct BackgroundJobs {
 impl BackgroundJobs {
     /// Starts the threads.
     pub(super) fn start(make_engine: &EngineMaker, replies: &ReplySender) -> io::Result<Self> {
+        // Those that work on the study as it is hold one response of each model together; a variant may have another band.
+        let known = KnownModels::default();
         let engine = || {
-            let make = Arc::clone(make_engine);
-            move || make()
+            let (make, known) = (Arc::clone(make_engine), known.clone());
+            move || make().sharing(&known)
         };
         let answers = JobKind {
             tell: |queue, background| background.analysis = queue.progress(),
@@ -171,6 +175,8 @@ impl BackgroundJobs {
             withdraw: Some(|app| app.stop_identifying()),
             ..JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified)
         };
+        let make = Arc::clone(make_engine);
+        let engine_of_variants = move || make();
         let kinds = vec![
             started("analysis", engine(), answers, replies)?,
             started("curves", engine(), curves, replies)?,
@@ -185,7 +191,7 @@ impl BackgroundJobs {
             started("test input", pool, test_answers, replies)?,
             started("record in time", pool, record_history, replies)?,
             started("answers to records", pool, time_histories, replies)?,
-            started("variants", engine(), variants, replies)?,
+            started("variants", engine_of_variants, variants, replies)?,
             started("simulation", pool, simulations, replies)?,
             started("report", engine(), reports, replies)?,
             started("identification", pool, identifications, replies)?,
@@ -289,8 +295,9 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// The error bars of what is shown; while that is computed anew, the answer has all cores.
+/// The error bars of what is shown; while that is computed anew, the answer has all cores, and so has the first picture of it.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
-    state.analysis().filter(|_| !state.results.is_behind())?;
-    state.results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
+    let results = &state.results;
+    state.analysis().filter(|_| !results.is_behind() && (results.is_painted || results.uncertainty.is_some()))?;
+    results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
 }

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use eframe::{App, NativeOptions};
@@ -17,7 +18,7 @@ use crate::view::{Command, Preferences};
 use gdcm_core::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
+use gdcm_files::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
 
 use super::threads::{self, Fault, caught};
 use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
@@ -85,32 +86,29 @@ impl Setup {
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let models = path.clone().filter(|path| holds_models(path));
     let command = headless(path.as_deref(), models.is_some());
-    let (opened, trouble) = match load(path.filter(|_| models.is_none())) {
-        (Some(opened), trouble) => (opened, trouble),
-        (None, trouble) => {
-            trouble.iter().for_each(|words| eprintln!("error: {words}"));
-            return ExitCode::from(WRONG_FILE);
-        }
-    };
-    // On the terminal too: where no window comes, that is all there is.
-    trouble.iter().for_each(|words| eprintln!("error: {words}"));
+    let dataset = path.filter(|_| models.is_none());
     if let Some(reason) = missing_display() {
-        if trouble.is_some() {
+        if told(load(dataset)).1.is_some() {
             return ExitCode::from(WRONG_FILE);
         }
         eprintln!("error: {}", no_window(&reason, &command));
         return ExitCode::from(NO_WINDOW);
     }
-    if let Err(reason) = start_threads() {
-        eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})"), &command));
-        return ExitCode::from(NO_WINDOW);
-    }
+    // The file is read while the window is made.
+    let reading = std::thread::Builder::new().name("file".to_owned()).spawn(|| told(load(dataset)));
+    let reading =
+        match start_threads().map_err(|error| error.to_string()).and(reading.map_err(|error| error.to_string())) {
+            Ok(reading) => reading,
+            Err(reason) => {
+                eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})"), &command));
+                return ExitCode::from(NO_WINDOW);
+            }
+        };
     let mended = eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
     mended.iter().for_each(|words| eprintln!("caution: {words}"));
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
-    let setup = Setup { trouble, ..Setup::of_program() };
-    match ending(caught(|| run(opened, models, setup, &opening)), opening.get(), &command) {
+    match ending(caught(|| run(reading, models, &opening)), opening.get(), &command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
             eprintln!("error: {words}");
@@ -133,19 +131,25 @@ fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>, command: 
 }
 
 /// What the window opens on, and what is wrong with the file that was asked for: then it opens on the example.
-fn load(path: Option<PathBuf>) -> (Option<Opened>, Option<String>) {
-    let found =
-        path.map_or_else(|| embedded_example().map(Opened::Dataset), |path| load_any(&path, &ReadingBudget::default()));
-    match found {
-        Ok(opened) => (Some(opened), None),
-        Err(error) => {
-            let words = shortened_message(&sanitized(&error.to_string()));
-            (embedded_example().map(Opened::Dataset).ok(), Some(words))
-        }
+type Loaded = (Result<Opened, String>, Option<String>);
+
+fn load(path: Option<PathBuf>) -> Loaded {
+    let words = |error: FileError| shortened_message(&sanitized(&error.to_string()));
+    let example = || embedded_example().map(Opened::Dataset).map_err(words);
+    match path.map(|path| load_any(&path, &ReadingBudget::default()).map_err(words)) {
+        None => (example(), None),
+        Some(Ok(opened)) => (Ok(opened), None),
+        Some(Err(trouble)) => (example(), Some(trouble)),
     }
 }
 
-fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
+/// Tells what is wrong with the file on the terminal too: where no window comes, that is all there is.
+fn told(loaded: Loaded) -> Loaded {
+    loaded.1.iter().for_each(|words| eprintln!("error: {words}"));
+    loaded
+}
+
+fn run(reading: JoinHandle<Loaded>, models: Option<PathBuf>, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
         .with_app_id(APP_ID)
@@ -154,12 +158,14 @@ fn run(opened: Opened, models: Option<PathBuf>, setup: Setup, opening: &Arc<Once
     // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
     let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
     let opening = Arc::clone(opening);
-    let is_unasked = models.is_none()
-        && setup.trouble.is_none()
-        && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
+        let (opened, trouble) = reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        let opened = opened?;
+        let is_unasked = models.is_none()
+            && trouble.is_none()
+            && matches!(&opened, Opened::Dataset(loaded) if loaded.path().is_none());
         let kept = creation.storage.and_then(|storage| eframe::get_value(storage, PREFERENCES));
-        let setup = Setup { preferences: kept.unwrap_or_default(), ..setup };
+        let setup = Setup { preferences: kept.unwrap_or_default(), trouble, ..Setup::of_program() };
         let last = last_opened(&setup).filter(|_| is_unasked);
         let mut app = GdcmApp::with(&creation.egui_ctx, opened, setup)?;
         if let Some(path) = last {
@@ -254,9 +260,9 @@ mod tests {
         let path = folder.path().join("broken.json");
         std::fs::write(&path, "{\"format\": ").unwrap();
         let (opened, trouble) = load(Some(path));
-        assert!(matches!(opened, Some(Opened::Dataset(loaded)) if loaded.path().is_none()), "the example");
+        assert!(matches!(opened, Ok(Opened::Dataset(loaded)) if loaded.path().is_none()), "the example");
         assert!(trouble.is_some_and(|words| words.contains("broken.json")));
-        assert!(matches!(load(None), (Some(_), None)));
+        assert!(matches!(load(None), (Ok(_), None)));
     }
 
     #[test]

@@ -441,6 +441,11 @@ impl eframe::App for GdcmApp {
         self.name_window();
         self.request();
         self.want_jobs();
+        // What waits for the first picture is asked for in the next frame, when this one is on the screen.
+        if !self.state.results.is_painted && self.state.results.analysis.is_some() {
+            self.state.results.is_painted = true;
+            ctx.request_repaint();
+        }
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
             // The mark of stale results appears by the clock, not by an event, and so does that of work under way.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));

@@ -108,6 +108,8 @@ pub struct Results {
     pub received: u64,
     /// When the oldest request without an answer was made \[s of the window's clock\].
     pub waiting_since: Option<f64>,
+    /// Whether a frame with an analysis has been on the screen.
+    pub is_painted: bool,
     /// How long the newest analysis took \[ms\].
     pub elapsed_ms: f64,
     /// Whether the newest request was given up, by hand or by a fault: what is shown stays older than the settings.

@@ -73,7 +73,7 @@ impl ConditionResponses {
         (band, points): (Band, usize),
         execution: &Execution<'_>,
     ) -> Result<Self, Cancelled> {
-        let models = ConditionModels::of(condition, &mut KnownModels::default());
+        let models = ConditionModels::of(condition, &KnownModels::default());
         let grid = FrequencyGrid::logarithmic(band, points);
         models.responses(Purpose::Comparison, (band, points), &grid, execution)
     }
@@ -107,21 +107,26 @@ impl ModelResponses {
     }
 }
 
-/// The models that some condition holds, by their numbers: a model that stays, or comes back under another name or in another
-/// place, keeps its responses.
+/// The models that some condition of some engine holds, by their numbers: a model that stays, or comes back under another name or in
+/// another place, keeps its responses. Engines of one study that share them ([`super::Engine::sharing`]) compute and hold each once.
 #[derive(Clone, Debug, Default)]
-pub(super) struct KnownModels {
-    by_content: HashMap<ContentHash, Weak<ModelResponses>>,
+pub struct KnownModels {
+    by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
 }
 
 impl KnownModels {
-    /// Forgets the models that no condition holds any more.
-    pub(super) fn forget_unused(&mut self) {
-        self.by_content.retain(|_, responses| responses.strong_count() > 0);
+    fn by_content(&self) -> MutexGuard<'_, HashMap<ContentHash, Weak<ModelResponses>>> {
+        self.by_content.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn responses_of(&mut self, content: ContentHash) -> Arc<ModelResponses> {
-        let known = self.by_content.entry(content).or_default();
+    /// Forgets the models that no condition holds any more.
+    pub(super) fn forget_unused(&self) {
+        self.by_content().retain(|_, responses| responses.strong_count() > 0);
+    }
+
+    fn responses_of(&self, content: ContentHash) -> Arc<ModelResponses> {
+        let mut by_content = self.by_content();
+        let known = by_content.entry(content).or_default();
         known.upgrade().unwrap_or_else(|| {
             let made = Arc::new(ModelResponses::default());
             *known = Arc::downgrade(&made);
@@ -140,7 +145,7 @@ pub(super) struct ConditionModels {
 
 impl ConditionModels {
     /// The models of `condition`; those that are known already bring their responses.
-    pub(super) fn of(condition: &Arc<Condition>, known: &mut KnownModels) -> Self {
+    pub(super) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
         let models = contents.map(|content| (content, known.responses_of(content))).collect();
         Self { condition: Arc::clone(condition), models }

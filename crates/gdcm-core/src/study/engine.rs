@@ -89,6 +89,12 @@ impl Engine {
         Self { proofs, ..self }
     }
 
+    /// The same engine with the responses of models that other engines know; for engines that work on the same band and points in
+    /// turn, since of each model the last response is kept.
+    pub fn sharing(self, known: &KnownModels) -> Self {
+        Self { known: known.clone(), ..self }
+    }
+
     /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.conditions.values_mut().for_each(|stages| stages.take_gains(problem, solution));
@@ -192,7 +198,7 @@ impl Engine {
         if self.dataset.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, dataset)) {
             return;
         }
-        let models = dataset.conditions().iter().map(|condition| ConditionModels::of(condition, &mut self.known));
+        let models = dataset.conditions().iter().map(|condition| ConditionModels::of(condition, &self.known));
         // All are made before any of the last dataset's is dropped: a model may have moved.
         let models: Vec<ConditionModels> = models.collect();
         let mut before = std::mem::take(&mut self.conditions);

@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use super::*;
 use crate::EveryCore;
 use gdcm_core::dataset::{Condition, Dataset, Model, ModelId};
-use gdcm_core::study::{Cancelled, ConditionAnalysis, ConditionFailure, Progress, WantedFirst};
+use gdcm_core::study::{
+    Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, KnownModels, Progress, WantedFirst,
+};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -195,6 +197,27 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
         }
         assert_eq!(before.correction, after.correction, "condition {id}");
     }
+}
+
+#[test]
+fn engines_that_share_models_hold_one_response_of_each() {
+    let (study, known) = (short_study(), KnownModels::default());
+    let curves = |mut engine: Engine| {
+        let grid = (study.settings.band, 50);
+        let curves = engine.curves(&study.dataset, ConditionId(3), grid, &Unobserved).unwrap().unwrap();
+        (engine, curves)
+    };
+    let (first, before) = curves(Engine::default().sharing(&known));
+    let (second, after) = curves(Engine::default().sharing(&known));
+    let (_, apart) = curves(Engine::default());
+    let is_one = |a: &ConditionCurves, b: &ConditionCurves| {
+        a.physics.iter().chain(&a.identified).zip(b.physics.iter().chain(&b.identified)).all(|(a, b)| Arc::ptr_eq(a, b))
+    };
+    assert!(is_one(&before, &after) && !is_one(&before, &apart));
+    assert_eq!(before, apart);
+    drop((first, second));
+    let (_, anew) = curves(Engine::default().sharing(&known));
+    assert!(!is_one(&before, &anew), "what no engine holds is not kept");
 }
 
 #[test]

@@ -1,14 +1,11 @@
 //! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
-use std::collections::BTreeMap;
+use super::*;
 use std::fmt;
 use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
 
-use serde::{Deserialize, Serialize};
-
-use super::{Row, RowRole, standard_on_axis};
 use crate::dataset::ChannelSide;
 use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;

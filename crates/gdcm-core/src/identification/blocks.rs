@@ -8,7 +8,6 @@
 //! A block holds a complex pair *or* two real poles, so that pairs may split and merge.
 
 use super::*;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Imaginary part over modulus below which an eigenvalue is real: what the Schur iteration leaves of it.
 const REAL: f64 = 1e-9;
@@ -289,7 +288,6 @@ impl Modes {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::dmatrix;
 
     fn model() -> StateSpace {
         StateSpace::new(

@@ -13,8 +13,6 @@
 //! With feedback the inputs hold what gusts did to the outputs, and the cost stays at 1 however wrong the model is.
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Samples of the predictor over the time in which the upper end of the band turns by one radian.
 const STEP: f64 = 0.25;

@@ -1,8 +1,6 @@
 //! A flight record as it was logged, and the segments of it that identification uses.
 
 use super::*;
-use nalgebra::{DMatrix, DVectorView};
-use std::fmt;
 
 /// A flight record: samples of every input and output at stamped times, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,9 +13,6 @@
 //! far below 1 and says nothing.
 
 use super::*;
-use crate::dataset::{ModelBands, PairTable};
-use crate::executor::Executor;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Half width of a window over its centre.
 const HALF_WIDTH: f64 = 0.15;

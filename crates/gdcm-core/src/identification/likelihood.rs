@@ -14,8 +14,6 @@
 //! model is adequate, because W makes the noise white with real and imaginary parts of variance one.
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
 pub(super) const DEPENDENT: f64 = 1e-12;

@@ -13,8 +13,6 @@
 //! With tau in X the gradient is exact: variable projection in the form of Kaufman, BIT 15, 1975.
 
 use super::*;
-use crate::executor::each;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]

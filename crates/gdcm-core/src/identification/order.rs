@@ -13,8 +13,6 @@
 //! order within 3 % without one goes first.
 
 use super::*;
-use crate::executor::each;
-use std::collections::BTreeMap;
 
 /// The highest order at which the search begins.
 const FIRST: usize = 16;

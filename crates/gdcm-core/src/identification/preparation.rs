@@ -1,8 +1,6 @@
 //! From flight records as they were logged to segments without gaps on a uniform grid (M14, 1).
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::DMatrix;
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;

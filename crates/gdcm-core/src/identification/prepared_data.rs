@@ -1,8 +1,6 @@
 //! What models are made from and judged by, in scaled units.
 
 use super::*;
-use crate::executor::Executor;
-use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
 /// Points of the measured response.

@@ -12,10 +12,6 @@
 //! What changes when a record is left out blames nobody: it says only that the record carries an axis alone.
 
 use super::*;
-use crate::dataset::ChannelRemedy;
-use crate::executor::each;
-use nalgebra::{Complex, DMatrix, DVector};
-use std::fmt;
 
 /// Share of a direction that a record knows at least, and at most, so that it can be compared.
 const KNOWN: (f64, f64) = (0.02, 0.98);

@@ -10,7 +10,6 @@
 //! Marquardt, SIAM J. Appl. Math. 11, 1963. Scale freedoms of the blocks are left to lambda.
 
 use super::*;
-use std::collections::BTreeMap;
 
 /// Damping at the beginning.
 const FIRST_DAMPING: f64 = 1e-4;

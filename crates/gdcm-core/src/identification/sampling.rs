@@ -1,7 +1,6 @@
 //! The time stamps of a record.
 
 use super::*;
-use std::collections::BTreeMap;
 
 /// Stamps further off the multiples of the sample time than this share of it are uneven (M14, 1.1).
 const UNEVEN_PERCENT: f64 = 20.0;

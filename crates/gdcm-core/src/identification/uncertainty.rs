@@ -11,10 +11,7 @@
 //! The factor 2 was measured: bands of 95 % then hold 95 % of the true curves.
 
 use super::*;
-use crate::dataset::{ModelBands, Pair, PairTable};
-use crate::executor::{Executor, each};
 use crate::units::neper_to_db;
-use nalgebra::{Complex, DMatrix};
 
 /// Standard deviations that hold 95 %.
 pub const TWO_SIDED_95: f64 = 1.96;
@@ -277,7 +274,6 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
 mod tests {
     use super::*;
     use crate::executor::Sequential;
-    use nalgebra::dmatrix;
 
     /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
     fn turned(model: &BlockModel) -> BlockModel {

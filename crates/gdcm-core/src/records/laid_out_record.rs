@@ -1,11 +1,9 @@
 //! A record with the columns that are its channels, and what its name says about it.
 
 use super::*;
-use crate::assembly::{NamePattern, Row, folded_name, standard_patterns};
-use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
-use crate::identification::{FlightRecord, RecordUse};
-use nalgebra::DMatrix;
-use std::sync::Arc;
+use crate::assembly::{NamePattern, Row};
+use crate::dataset::{ConditionId, RecordKind};
+use crate::identification::RecordUse;
 
 /// What the names of folders and files say about a record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -203,7 +201,6 @@ fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::{ChannelRule, standard_patterns};
 
     #[test]
     fn columns_that_may_have_driven_the_loop_are_named_those_first_whose_names_say_so() {

@@ -1,7 +1,7 @@
 //! What is wrong, or odd, in the columns chosen from a record.
 
+use super::*;
 use crate::identification::TopicError;
-use crate::units::{number, telling};
 
 /// Why the columns chosen from a record cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

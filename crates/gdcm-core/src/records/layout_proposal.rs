@@ -1,9 +1,6 @@
 //! Columns proposed for the time and the channels of a record.
 
-use super::sample_units::possible_units;
 use super::*;
-use crate::assembly::{ChannelRule, SignedName, conversion_factor, folded_name, same_channel, sign_between};
-use crate::units::number;
 
 /// What the engineer says about the time of records.
 #[derive(Clone, Debug, Default, PartialEq)]

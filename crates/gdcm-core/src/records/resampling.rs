@@ -1,13 +1,7 @@
 //! Chosen columns with clocks of their own, brought to one (M14.11).
 
 use super::*;
-use crate::assembly::ChannelRule;
-use crate::dataset::ChannelSide;
-use crate::identification::{CommonClock, FlightRecord, Topic, TopicError, is_held};
-use crate::units::telling;
-use nalgebra::DMatrix;
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use crate::identification::{CommonClock, Topic, TopicError, is_held};
 
 /// What decides how topics with clocks of their own become one record.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -4,10 +4,6 @@
 //! one log, each with its own stamps. What a table is called names its columns.
 
 use super::*;
-use crate::assembly::time_name_rank;
-use crate::units::number;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Names of the one column that a topic has beside its stamps, which say nothing.
 const PLAIN: [&str; 8] = ["value", "values", "data", "signal", "signals", "x", "y", "val"];
@@ -313,7 +309,6 @@ fn shown(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::ChannelRule;
 
     fn topic(file: &str, variable: Option<&str>, columns: &[&str], step: f64) -> RecordTable {
         let stamps: Vec<f64> = (0..500).map(|k| step * f64::from(k)).collect();

@@ -180,10 +180,7 @@ impl Default for Rules {
 impl Rules {
     /// The inputs or the outputs of the dataset.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
-        match side {
-            ChannelSide::Input => &mut self.inputs,
-            ChannelSide::Output => &mut self.outputs,
-        }
+        side.of(&mut self.inputs, &mut self.outputs)
     }
 
     /// Calls a channel of the dataset otherwise. Files call it as before; what was said of it, on-axis responses, conversions and signs,

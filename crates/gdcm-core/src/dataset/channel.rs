@@ -70,6 +70,13 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
+    /// Where the entry of a response stands.
+    fn place(&self, pair: Pair) -> usize {
+        let (outputs, inputs) = (self.outputs, self.inputs);
+        assert!(pair.output < outputs && pair.input < inputs, "{pair:?} is outside a {outputs} x {inputs} table");
+        pair.output * inputs + pair.input
+    }
+
     /// The entry of a response; `None` where the table has no such response.
     pub fn get(&self, pair: Pair) -> Option<&T> {
         (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
@@ -115,25 +122,14 @@ impl<T> Index<Pair> for PairTable<T> {
     type Output = T;
 
     fn index(&self, pair: Pair) -> &T {
-        assert!(
-            pair.output < self.outputs && pair.input < self.inputs,
-            "{pair:?} is outside a {} x {} table",
-            self.outputs,
-            self.inputs
-        );
-        &self.entries[pair.output * self.inputs + pair.input]
+        &self.entries[self.place(pair)]
     }
 }
 
 impl<T> IndexMut<Pair> for PairTable<T> {
     fn index_mut(&mut self, pair: Pair) -> &mut T {
-        assert!(
-            pair.output < self.outputs && pair.input < self.inputs,
-            "{pair:?} is outside a {} x {} table",
-            self.outputs,
-            self.inputs
-        );
-        &mut self.entries[pair.output * self.inputs + pair.input]
+        let place = self.place(pair);
+        &mut self.entries[place]
     }
 }
 
@@ -147,9 +143,19 @@ pub enum ChannelSide {
     Output,
 }
 
+impl ChannelSide {
+    /// What is of this side, out of what is of the inputs and what is of the outputs.
+    pub fn of<T>(self, inputs: T, outputs: T) -> T {
+        match self {
+            Self::Input => inputs,
+            Self::Output => outputs,
+        }
+    }
+}
+
 impl std::fmt::Display for ChannelSide {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if *self == Self::Input { "input" } else { "output" })
+        f.write_str(self.of("input", "output"))
     }
 }
 

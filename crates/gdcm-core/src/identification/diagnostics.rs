@@ -169,17 +169,6 @@ const POINTS: usize = 5;
 /// `T` and `D` above which the model leaves the points.
 const LEAVES: (f64, f64) = (12.0, 0.12);
 
-/// A response that leaves its measured points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Departure {
-    /// Output and input.
-    pub(super) pair: (usize, usize),
-    /// Where \[rad/s\].
-    pub(super) band: [f64; 2],
-    /// The greatest `T`.
-    pub(super) strength: f64,
-}
-
 /// What the model gives at the measured points, seen as these are: through the local polynomials where no reference stands between.
 pub(super) fn model_at_points(
     model: &BlockModel,
@@ -203,13 +192,14 @@ pub(super) fn model_at_points(
     }
 }
 
-/// The greatest `T` of a response, and where it leaves its points; `model` is the model at each of them.
+/// The greatest `T` of a response, and where \[rad/s\] it leaves its points with which greatest `T` there; `model` is the model at each
+/// of them.
 pub(super) fn departure(
     model: &[DMatrix<Complex<f64>>],
     measured: &ResponseEstimate,
     band: [f64; 2],
     pair: (usize, usize),
-) -> (f64, Option<Departure>) {
+) -> (f64, Option<([f64; 2], f64)>) {
     let is_tested = |(point, _): &(&EstimatePoint, &DMatrix<Complex<f64>>)| {
         (band[0]..=band[1]).contains(&point.omega) && point.half_width <= NARROW_WINDOW * point.omega
     };
@@ -219,15 +209,15 @@ pub(super) fn departure(
         (point.omega, distance, (own / found - 1.0).norm())
     };
     let tested: Vec<(f64, f64, f64)> = measured.points.iter().zip(model).filter(is_tested).map(of_point).collect();
-    let (mut greatest, mut left) = (0.0_f64, None::<Departure>);
+    let (mut greatest, mut left) = (0.0_f64, None);
     for near in tested.windows(POINTS) {
         let mean = |part: fn(&(f64, f64, f64)) -> f64| near.iter().map(part).sum::<f64>() / POINTS as f64;
         let (t, d) = (mean(|of| of.1), mean(|of| of.2));
         greatest = greatest.max(t);
         if t > LEAVES.0 && d > LEAVES.1 {
             let (from, to) = (near[0].0, near[POINTS - 1].0);
-            let before = left.map_or((from, 0.0), |of| (of.band[0], of.strength));
-            left = Some(Departure { pair, band: [before.0, to], strength: t.max(before.1) });
+            let before = left.map_or((from, 0.0), |([from, _], strength): ([f64; 2], f64)| (from, strength));
+            left = Some(([before.0, to], t.max(before.1)));
         }
     }
     (greatest, left)
@@ -239,13 +229,12 @@ impl Diagnostics<'_> {
         let (outputs, inputs) = self.fit.model.d.shape();
         let pairs = (0..inputs).flat_map(|input| (0..outputs).map(move |output| (output, input)));
         let model = model_at_points(&self.fit.model, self.data, self.options);
-        let left = pairs.filter_map(|pair| departure(&model, &self.data.measured, self.options.band, pair).1);
-        let caution = |of: Departure| IdentificationCaution::LeavesPoints {
-            output: self.options.signal(ChannelSide::Output, of.pair.0),
-            input: self.options.signal(ChannelSide::Input, of.pair.1),
-            band: of.band,
-            strength: of.strength,
+        let caution = |(output, input)| {
+            let (band, strength) = departure(&model, &self.data.measured, self.options.band, (output, input)).1?;
+            let output = self.options.signal(ChannelSide::Output, output);
+            let input = self.options.signal(ChannelSide::Input, input);
+            Some(IdentificationCaution::LeavesPoints { output, input, band, strength })
         };
-        left.map(caution).collect()
+        pairs.filter_map(caution).collect()
     }
 }

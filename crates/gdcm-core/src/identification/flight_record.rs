@@ -33,20 +33,14 @@ pub struct Segment {
 impl FlightRecord {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        match signal.role {
-            ChannelSide::Input => self.inputs.column(signal.index),
-            ChannelSide::Output => self.outputs.column(signal.index),
-        }
+        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
     }
 }
 
 impl Segment {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        match signal.role {
-            ChannelSide::Input => self.inputs.column(signal.index),
-            ChannelSide::Output => self.outputs.column(signal.index),
-        }
+        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
     }
 }
 

@@ -142,7 +142,7 @@ fn report(
     let fits = RecordFits::of(data, &fit.model, &covariance).ok_or_else(no_model)?;
     let diagnostics = Diagnostics { records, options, data, fit };
     let mut cautions = data.cautions.clone();
-    cautions.extend(refinement.cautions.iter().cloned());
+    cautions.extend(refinement.caution.clone());
     let level = feedback.as_ref().map_or(FeedbackLevel::None, Feedback::level);
     cautions.extend(feedback.as_ref().filter(|_| level > FeedbackLevel::None).map(|of| {
         let (share, significance) = (of.share, of.significance);
@@ -178,9 +178,9 @@ fn report(
     let mut refined = of_order(REFINED, &fit.model).ok_or_else(no_model)?;
     refined.bands = Some(Arc::new(bands));
     let mut bundle: Vec<Model> = neighbours.iter().filter_map(|of| of_order(REFINED, of)).collect();
-    bundle.extend(without.iter().filter_map(|one| {
-        let name = format!("{REFINED}, without {}", diagnostics.record_name(one.record));
-        model(name, REFINED, &one.model, Some(one.record))
+    bundle.extend(without.iter().filter_map(|(record, left)| {
+        let name = format!("{REFINED}, without {}", diagnostics.record_name(*record));
+        model(name, REFINED, left, Some(*record))
     }));
     let validation = match data.held_out_segments.as_slice() {
         [] => None,
@@ -276,7 +276,7 @@ impl Options {
 
     /// A channel by its place, with its name.
     pub(super) fn signal(&self, role: ChannelSide, index: usize) -> Signal {
-        let channels = if role == ChannelSide::Input { &self.preparation.inputs } else { &self.preparation.outputs };
+        let channels = role.of(&self.preparation.inputs, &self.preparation.outputs);
         Signal { role, index, name: channels.get(index).map_or_else(String::new, |channel| channel.name.clone()) }
     }
 

@@ -123,7 +123,7 @@ impl Projections {
         let mut parts = each(executor, segments.chunks(segments.len().div_ceil(PARTS).max(1)), part).into_iter();
         let Some(mut factor) = parts.next() else { return TriangularFactor::empty(0) };
         for other in parts {
-            factor.merge(&other);
+            factor.append(other.matrix());
         }
         factor
     }
@@ -147,29 +147,20 @@ fn take_off_trend(rows: &mut DMatrix<f64>) {
 
 // The law that Laguerre projections obey, and the model in continuous time behind it.
 
-/// `xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k`, `y~_k = Co xi_k + Do u~_k + e~_k` for the projections k = 0, 1, ... with the pole `a`.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct LaguerreModel {
-    /// `a` \[rad/s\].
-    pub(super) pole: f64,
-    /// `Ao`, `Bo`, `Co`, `Do` \[-\].
-    pub(super) matrices: StateSpace,
-}
-
-impl LaguerreModel {
-    /// The model in continuous time; none where `Ao` has the eigenvalue -1.
-    ///
-    /// ```text
-    /// M = (Ao + I)^-1,   A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
-    /// ```
-    pub(super) fn continuous(&self) -> Option<StateSpace> {
-        let (a, b, c, d) = (self.matrices.a(), self.matrices.b(), self.matrices.c(), self.matrices.d());
-        let identity = DMatrix::identity(a.nrows(), a.nrows());
-        let m = (a + &identity).try_inverse()?;
-        let (mb, cm) = (&m * b, c * &m);
-        let root = (2.0 * self.pole).sqrt();
-        StateSpace::new(&m * (a - &identity) * self.pole, &mb * root, cm * root, d - c * mb).ok()
-    }
+/// The model in continuous time behind the law of Laguerre projections with the pole `pole` \[rad/s\]; none where `Ao` has the
+/// eigenvalue -1.
+///
+/// ```text
+/// xi_{k+1} = Ao xi_k + Bo u~_k + Ko e~_k,   y~_k = Co xi_k + Do u~_k + e~_k   for the projections k = 0, 1, ...
+/// M = (Ao + I)^-1,   A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
+/// ```
+pub(super) fn continuous(pole: f64, law: &StateSpace) -> Option<StateSpace> {
+    let (a, b, c, d) = (law.a(), law.b(), law.c(), law.d());
+    let identity = DMatrix::identity(a.nrows(), a.nrows());
+    let m = (a + &identity).try_inverse()?;
+    let (mb, cm) = (&m * b, c * &m);
+    let root = (2.0 * pole).sqrt();
+    StateSpace::new(&m * (a - &identity) * pole, &mb * root, cm * root, d - c * mb).ok()
 }
 
 // The triangular factor of a tall matrix that arrives in blocks of rows.
@@ -204,11 +195,6 @@ impl TriangularFactor {
     /// The upper triangular matrix.
     pub(super) fn matrix(&self) -> &DMatrix<f64> {
         &self.0
-    }
-
-    /// Takes in the rows of which `other` is the factor.
-    pub(super) fn merge(&mut self, other: &Self) {
-        self.append(&other.0);
     }
 
     /// Takes in further rows.
@@ -331,7 +317,7 @@ mod tests {
         let known = &answers()["laguerre_to_ct"];
         let of = |name: &str| matrix(&known[name]);
         let matrices = StateSpace::new(of("Ao"), of("Bo"), of("Co"), of("Do")).unwrap();
-        let model = LaguerreModel { pole: number(&known["a"]), matrices }.continuous().unwrap();
+        let model = continuous(number(&known["a"]), &matrices).unwrap();
         for (found, name) in [(model.a(), "A"), (model.b(), "B"), (model.c(), "C"), (model.d(), "D")] {
             // Independent numpy code; the tolerance stands in its file.
             assert!((found - of(name)).amax() < 1e-12, "{name}");
@@ -342,7 +328,7 @@ mod tests {
     fn an_eigenvalue_of_minus_one_has_no_continuous_model() {
         let one = DMatrix::from_element(1, 1, 1.0);
         let matrices = StateSpace::new(-&one, one.clone(), one.clone(), one).unwrap();
-        assert_eq!(LaguerreModel { pole: 2.0, matrices }.continuous(), None);
+        assert_eq!(continuous(2.0, &matrices), None);
     }
 
     fn sample(rows: usize, columns: usize) -> DMatrix<f64> {

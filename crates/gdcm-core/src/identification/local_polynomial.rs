@@ -231,6 +231,15 @@ impl LocalFit {
         left.into_iter().zip(all).map(|(left, all)| explained(left, all)).collect()
     }
 
+    /// `|V|^2` of each output when input `i` is left out: the triangular factor without its columns, made triangular again.
+    fn left_without(&self, i: usize) -> Vec<f64> {
+        let (unknowns, from) = (self.unknowns(), self.unknowns() - self.window.terms);
+        let is_kept = |column: &usize| *column >= unknowns || column % self.inputs != i;
+        let kept: Vec<usize> = (0..unknowns + self.outputs).filter(is_kept).collect();
+        let smaller = self.r.select_columns(&kept).qr().unpack_r();
+        (0..self.outputs).map(|o| smaller.column(from + o).rows_range(from..).norm_squared()).collect()
+    }
+
     /// The estimate; see [`local_polynomial`].
     fn estimate(&self) -> EstimatePoint {
         let (inputs, outputs) = (self.inputs, self.outputs);
@@ -239,11 +248,9 @@ impl LocalFit {
         let left = self.squares(self.unknowns());
         let mut partial_coherence = DMatrix::zeros(outputs, inputs);
         for i in 0..inputs {
-            let without = left_without(&self.r, i, (inputs, outputs), self.window.terms);
+            let without = self.left_without(i);
             (0..outputs).for_each(|o| partial_coherence[(o, i)] = explained(left[o], without[o]));
         }
-        let singular = self.r.view((0, 0), (inputs, inputs)).clone_owned().singular_values();
-        let condition = (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2);
         EstimatePoint {
             omega: self.omega(),
             response: self.response(),
@@ -252,7 +259,7 @@ impl LocalFit {
             power: self.power(),
             coherence: DVector::from_vec(self.coherence()),
             partial_coherence,
-            condition,
+            condition: condition(self.r.view((0, 0), (inputs, inputs)).clone_owned()),
             half_width: self.half_width(),
             freedom: self.freedom,
         }
@@ -304,13 +311,18 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
     (rows, power)
 }
 
-/// `|V|^2` of each output when input `i` is left out: the triangular factor `r` without its columns, made triangular again.
-fn left_without(r: &DMatrix<Complex<f64>>, i: usize, (inputs, outputs): (usize, usize), terms: usize) -> Vec<f64> {
-    let unknowns = terms * inputs;
-    let kept: Vec<usize> = (0..unknowns + outputs).filter(|&c| c >= unknowns || c % inputs != i).collect();
-    let smaller = r.select_columns(&kept).qr().unpack_r();
-    let from = unknowns - terms;
-    (0..outputs).map(|o| smaller.column(from + o).rows_range(from..).norm_squared()).collect()
+/// Square of the greatest singular value over the least.
+pub(super) fn condition(matrix: DMatrix<Complex<f64>>) -> f64 {
+    let singular = matrix.singular_values();
+    (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2)
+}
+
+/// The places before and after `x` among numbers that ascend, and how far it lies from the one to the other; beyond the ends the end.
+pub(super) fn between(ascending: &[f64], x: f64) -> (usize, usize, f64) {
+    let after = ascending.partition_point(|at| *at <= x).min(ascending.len() - 1);
+    let before = after.saturating_sub(1);
+    let (from, to) = (ascending[before], ascending[after]);
+    (before, after, if to > from { ((x - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 })
 }
 
 // The measured frequency response, with what speaks for it.
@@ -505,17 +517,8 @@ impl NoiseCovariance {
     /// `Cv` at `omega` \[rad/s\].
     #[must_use]
     pub fn at(&self, omega: f64) -> DMatrix<f64> {
-        let x = omega.ln();
-        let after = self.log_omega.partition_point(|&w| w <= x);
-        if after == 0 {
-            return self.covariances[0].clone();
-        }
-        let before = after - 1;
-        let Some(next) = self.covariances.get(after) else {
-            return self.covariances[before].clone();
-        };
-        let share = (x - self.log_omega[before]) / (self.log_omega[after] - self.log_omega[before]);
-        self.covariances[before].scale(1.0 - share) + next.scale(share)
+        let (before, after, share) = between(&self.log_omega, omega.ln());
+        self.covariances[before].scale(1.0 - share) + self.covariances[after].scale(share)
     }
 
     /// `W` at `omega`: the inverse of the lower Cholesky factor of `Cv / 2`, outputs x outputs, lower triangular.
@@ -527,12 +530,5 @@ impl NoiseCovariance {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();
         let inverse = lower.solve_lower_triangular(&DMatrix::identity(lower.nrows(), lower.nrows()))?;
         inverse.iter().all(|w| w.is_finite()).then_some(inverse)
-    }
-
-    /// `W e` for a vector of lines `e`, one an output; see [`Self::weight`].
-    #[must_use]
-    pub fn whitened(weight: &DMatrix<f64>, lines: &[Complex<f64>]) -> Vec<Complex<f64>> {
-        let row = |o: usize| (0..=o).map(|k| lines[k] * weight[(o, k)]).sum();
-        (0..weight.nrows().min(lines.len())).map(row).collect()
     }
 }

@@ -14,26 +14,35 @@ impl BlockModel {
     pub(super) fn without_least_mode(&self, size: usize, measured: &ResponseEstimate) -> Option<Self> {
         let modes = self.modes();
         let losses = modes.iter().enumerate().filter(|(_, mode)| mode.order() == size);
-        let losses = losses.map(|(at, mode)| (at, Loss::of(mode, measured)));
-        let (at, loss) = losses.min_by(|a, b| a.1.weighed.total_cmp(&b.1.weighed))?;
+        let losses = losses.map(|(at, mode)| (at, mode.loss(measured)));
+        let (at, (_, mean)) = losses.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
         let kept: Vec<&Self> =
             modes.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, mode)| mode).collect();
-        let order = self.order() - size;
-        let (inputs, outputs) = (self.b.ncols(), self.c.nrows());
-        let mut joined = Self {
-            blocks: kept.iter().flat_map(|mode| mode.blocks.iter().copied()).collect(),
-            b: DMatrix::zeros(order, inputs),
-            c: DMatrix::zeros(outputs, order),
-            d: &self.d + loss.mean,
-        };
-        let mut first = 0;
-        for mode in kept {
-            joined.b.rows_mut(first, mode.order()).copy_from(&mode.b);
-            joined.c.columns_mut(first, mode.order()).copy_from(&mode.c);
-            first += mode.order();
+        if kept.is_empty() {
+            return None;
         }
+        let rows: Vec<_> = kept.iter().flat_map(|mode| mode.b.row_iter()).collect();
+        let columns: Vec<_> = kept.iter().flat_map(|mode| mode.c.column_iter()).collect();
+        let joined = Self {
+            blocks: kept.iter().flat_map(|mode| mode.blocks.iter().copied()).collect(),
+            b: DMatrix::from_rows(&rows),
+            c: DMatrix::from_columns(&columns),
+            d: &self.d + mean,
+        };
         // Pairs real poles again.
         Self::of(&joined.state_space()?)
+    }
+
+    /// What is lost with this mode, `sum |dH - mean dH|^2 / var G`, and the mean of its real part over frequency, which stays in `D`.
+    fn loss(&self, measured: &ResponseEstimate) -> (f64, DMatrix<f64>) {
+        let lost: Vec<_> = measured.points.iter().map(|point| self.response(point.omega)).collect();
+        let mut mean = self.d.clone();
+        lost.iter().for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
+        let at_point = |(lost, point): (&DMatrix<Complex<f64>>, &EstimatePoint)| {
+            let left = lost.zip_map(&mean, |lost, mean| (lost - mean).norm_sqr());
+            left.zip_map(&point.variance, |left, variance| left / variance.max(f64::MIN_POSITIVE)).sum()
+        };
+        (lost.iter().zip(&measured.points).map(at_point).sum(), mean)
     }
 
     /// Each mode as a model without `D`: a complex pair, or a real pole.
@@ -60,28 +69,6 @@ impl BlockModel {
             }
         };
         self.rows().flat_map(of_block).collect()
-    }
-}
-
-/// What the model loses with a mode.
-struct Loss {
-    /// Mean of the real part over frequency, which stays in `D`.
-    mean: DMatrix<f64>,
-    /// `sum |dH - mean dH|^2 / var G`.
-    weighed: f64,
-}
-
-impl Loss {
-    fn of(mode: &BlockModel, measured: &ResponseEstimate) -> Self {
-        let lost: Vec<_> = measured.points.iter().map(|point| mode.response(point.omega)).collect();
-        let mut mean = mode.d.clone();
-        lost.iter().for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
-        let at_point = |(lost, point): (&DMatrix<Complex<f64>>, &EstimatePoint)| {
-            let left = lost.zip_map(&mean, |lost, mean| (lost - mean).norm_sqr());
-            left.zip_map(&point.variance, |left, variance| left / variance.max(f64::MIN_POSITIVE)).sum()
-        };
-        let weighed = lost.iter().zip(&measured.points).map(at_point).sum();
-        Self { mean, weighed }
     }
 }
 

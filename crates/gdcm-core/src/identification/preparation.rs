@@ -103,14 +103,12 @@ impl Preparation {
 
     /// How a channel is prepared.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
-        let channels = if signal.role == ChannelSide::Input { &self.inputs } else { &self.outputs };
-        channels.get(signal.index)
+        signal.role.of(&self.inputs, &self.outputs).get(signal.index)
     }
 
     /// How a channel is prepared, to change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
-        let channels = if signal.role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
-        channels.get_mut(signal.index)
+        signal.role.of(&mut self.inputs, &mut self.outputs).get_mut(signal.index)
     }
 
     fn checked(&self) -> Result<(), PreparationError> {

@@ -113,7 +113,8 @@ impl<'a> PreparedData<'a> {
         cautions.extend(length.caution());
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
-        cautions.extend(band_caution(&measured, options));
+        let shown = measured.shown_band(options.band);
+        cautions.extend(shown.map(|shown| IdentificationCaution::BandNotShown { band: options.band, shown }));
         Ok(Self {
             record_uses: prepared.records,
             scales,
@@ -301,11 +302,6 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
         cut_off: cut_off.omega,
     };
     cut_off.vibrating.iter().map(caution).collect()
-}
-
-fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
-    let shown = measured.shown_band(options.band)?;
-    Some(IdentificationCaution::BandNotShown { band: options.band, shown })
 }
 
 fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<IdentificationCaution> {

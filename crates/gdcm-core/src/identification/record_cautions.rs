@@ -295,8 +295,7 @@ fn coarseness(samples: &[f64]) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > FLAT * deviation);
     let least = steps.fold(f64::INFINITY, f64::min);
-    let even = values.windows(2).all(|pair| pair[1] - pair[0] <= FLAT * deviation || pair[1] - pair[0] >= least);
-    (deviation > 0.0 && least.is_finite() && even).then_some(least / deviation)
+    (deviation > 0.0 && least.is_finite()).then_some(least / deviation)
 }
 
 /// The samples of a channel that are numbers.

@@ -12,15 +12,6 @@
 
 use super::*;
 
-/// How a predictor is made.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PredictorSettings {
-    /// `f_max`: block rows of the map to the future at most.
-    pub(super) longest_future: usize,
-    /// Ridge over columns of length one.
-    pub(super) ridge: f64,
-}
-
 /// The states of every order that one pole and one past window propose.
 #[derive(Clone, Debug)]
 pub(super) struct Subspace {
@@ -38,13 +29,15 @@ pub(super) struct Subspace {
 
 impl Subspace {
     /// What the triangular factor of the data matrix of a pole \[rad/s\] says for the past window `past`; none where the
-    /// regressors depend on each other or an iteration does not end.
+    /// regressors depend on each other or an iteration does not end. The map to the future has `longest_future` block rows at most, and
+    /// the predictor a `ridge` over columns of length one.
     pub(super) fn new(
         factor: &TriangularFactor,
         pole: f64,
         (inputs, outputs): (usize, usize),
         past: usize,
-        settings: PredictorSettings,
+        longest_future: usize,
+        ridge: f64,
     ) -> Option<Self> {
         let channels = inputs + outputs;
         let width = past * channels;
@@ -53,8 +46,8 @@ impl Subspace {
             return None;
         }
         let factor = factor.matrix().view((0, 0), (all, all)).into_owned();
-        let theta = ridge_solution(factor.as_view(), width + inputs, settings.ridge)?.transpose();
-        let future = past.min(settings.longest_future);
+        let theta = ridge_solution(factor.as_view(), width + inputs, ridge)?.transpose();
+        let future = past.min(longest_future);
         let mut map = DMatrix::zeros(future * outputs, width);
         for row in 0..future {
             let kept = (past - row) * channels;
@@ -69,8 +62,8 @@ impl Subspace {
         finite.then_some(Self { pole, inputs, factor, map, left: decomposition.u?, singular_values })
     }
 
-    /// The model of an order; none where the data do not hold so many states.
-    pub(super) fn model(&self, order: usize) -> Option<LaguerreModel> {
+    /// The model of an order in continuous time; none where the data do not hold so many states.
+    pub(super) fn model(&self, order: usize) -> Option<StateSpace> {
         let all = self.factor.ncols();
         let (inputs, width) = (self.inputs, self.map.ncols());
         let channels = all - width;
@@ -94,7 +87,7 @@ impl Subspace {
         let part = |solution: &DMatrix<f64>, from, count| solution.rows(from, count).transpose();
         let (a, b) = (part(&states_of, 0, order), part(&states_of, order, inputs));
         let (c, d) = (part(&outputs_of, 0, order), part(&outputs_of, order, inputs));
-        Some(LaguerreModel { pole: self.pole, matrices: StateSpace::new(a, b, c, d).ok()? })
+        continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
     }
 }
 
@@ -222,15 +215,14 @@ impl SubspaceSettings {
     ) -> Option<Candidate> {
         let segment = segments.first()?;
         let channels = (segment.inputs.ncols(), segment.outputs.ncols());
-        let settings = PredictorSettings { longest_future: self.longest_future, ridge: RIDGE };
-        let subspace = Subspace::new(factor, pole, channels, past, settings)?;
+        let subspace = Subspace::new(factor, pole, channels, past, self.longest_future, RIDGE)?;
         let cost = likelihood.cost(&self.model(&subspace, order)?)?;
         Some(Candidate { pole, past, cost, subspace })
     }
 
     /// The model of an order without modes far above the band.
     fn slow(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
-        without_fast_modes(&subspace.model(order)?.continuous()?, FASTEST * self.highest)
+        without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
 
     /// The same in blocks; none where all its modes are far above the band.
@@ -283,13 +275,12 @@ mod tests {
         let rows = projections.rows(&segment);
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
-        let settings = PredictorSettings { longest_future: 2, ridge: 0.0 };
-        let subspace = Subspace::new(&factor, projections.pole, channels, past, settings).unwrap();
+        let subspace = Subspace::new(&factor, projections.pole, channels, past, 2, 0.0).unwrap();
         // Independent numpy code; the tolerances stand in its file.
         for (found, expected) in subspace.singular_values.iter().zip(numbers(&known["singular_values"])) {
             assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
-        let model = subspace.model(4).unwrap().continuous().unwrap();
+        let model = subspace.model(4).unwrap();
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((response_at(&model, omega) - expected).camax() < 1e-6);
         }

@@ -159,8 +159,7 @@ impl RecordLayout {
 
     /// How a channel is used, to change.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
-        let uses = if role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
-        uses.get_mut(index)?.as_mut()
+        role.of(&mut self.inputs, &mut self.outputs).get_mut(index)?.as_mut()
     }
 
     /// The same columns, by name, of another record; none where that lacks one of them.

@@ -102,7 +102,7 @@ impl Assembly {
         if !self.problems.is_empty() {
             return None;
         }
-        let mut draft = self.draft();
+        let mut draft = merged(&self.rules, &self.parts);
         for condition in &mut draft.conditions {
             let models = condition.physics.iter_mut().chain(&mut condition.identified);
             let of_models = models.filter_map(|model| model.source.as_mut()?.file.as_mut());
@@ -113,10 +113,6 @@ impl Assembly {
             }
         }
         draft.checked().ok().map(|(dataset, _)| dataset)
-    }
-
-    fn draft(&self) -> DatasetDraft {
-        merged(&self.rules, &self.parts)
     }
 
     /// The models that are taken.
@@ -139,9 +135,10 @@ impl Assembly {
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
         }
-        problems.extend(self.condition_problems());
+        let conditions = by_condition(&self.parts);
+        problems.extend(conditions.iter().flat_map(|(condition, parts)| problems_of_condition(*condition, parts)));
         if problems.is_empty()
-            && let Err(error) = self.draft().checked()
+            && let Err(error) = merged(&self.rules, &self.parts).checked()
         {
             problems.push(Problem::of_all(ProblemKind::Dataset(format!("{}: {}", error.place, error.fault))));
         }
@@ -159,44 +156,28 @@ impl Assembly {
         }
         problems
     }
-
-    fn condition_problems(&self) -> Vec<Problem> {
-        let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
-        for (index, part) in self.taken() {
-            if let Some(condition) = part.row.condition {
-                conditions.entry(condition).or_default().push((index, part));
-            }
-        }
-        conditions.iter().flat_map(|(condition, parts)| problems_of_condition(*condition, parts)).collect()
-    }
 }
 
 fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     let said = rules.rows.get(&found.key());
-    let labels = |labels: &[ChannelLabel], names: Option<&Vec<String>>| -> Vec<ChannelLabel> {
+    // A measured response may be one of several files that belong together.
+    let partial = found.draft.response.is_some();
+    let signs = rules.signs_of(&found.key(), row.role);
+    let matched = |side, labels: &[ChannelLabel], names: Option<&Vec<String>>, channels: &[ChannelRule]| {
         let named = |(index, label): (usize, &ChannelLabel)| ChannelLabel {
             name: names.and_then(|names| names.get(index)).cloned().or_else(|| label.name.clone()),
             unit: label.unit.clone(),
         };
-        labels.iter().enumerate().map(named).collect()
-    };
-    let inputs = labels(&found.inputs, said.and_then(|said| said.inputs.as_ref()));
-    let outputs = labels(&found.outputs, said.and_then(|said| said.outputs.as_ref()));
-    // A measured response may be one of several files that belong together.
-    let partial = found.draft.response.is_some();
-    let signs = rules.signs_of(&found.key(), row.role);
-    let matched = |side, labels: &[ChannelLabel], channels: &[ChannelRule]| {
-        ChannelMatch::of(side, labels, channels, (&rules.units, &signs), partial)
-    };
-    let mut channels = [matched("input", &inputs, &rules.inputs), matched("output", &outputs, &rules.outputs)];
-    let names = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
-    let counts = [("input", inputs.len()), ("output", outputs.len())];
-    for ((of_side, names), (side, found)) in channels.iter_mut().zip(names).zip(counts) {
-        if let Some(names) = names.filter(|names| names.len() != found) {
-            of_side.problems.push(ProblemKind::Names { side, said: names.len(), found });
+        let labels: Vec<ChannelLabel> = labels.iter().enumerate().map(named).collect();
+        let mut matched = ChannelMatch::of(side, &labels, channels, (&rules.units, &signs), partial);
+        if let Some(names) = names.filter(|names| names.len() != labels.len()) {
+            matched.problems.push(ProblemKind::Names { side, said: names.len(), found: labels.len() });
         }
-    }
-    let [inputs, outputs] = channels;
+        matched
+    };
+    let [of_inputs, of_outputs] = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
+    let inputs = matched(ChannelSide::Input, &found.inputs, of_inputs, &rules.inputs);
+    let outputs = matched(ChannelSide::Output, &found.outputs, of_outputs, &rules.outputs);
     let sample_time_s = said.and_then(|said| said.sample_time_s).or(rules.sample_time_s);
     let sample_time_s = sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
     Part { found, row, inputs, outputs, sample_time_s }
@@ -206,12 +187,6 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
 
 /// The draft that the parts make; those that are left out, or of which condition or role are not said, are not in it.
 pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
-    let mut conditions: BTreeMap<i64, Vec<&Part>> = BTreeMap::new();
-    for part in parts.iter().filter(|part| !part.row.left_out) {
-        if let Some(condition) = part.row.condition {
-            conditions.entry(condition).or_default().push(part);
-        }
-    }
     let channel = |rule: &ChannelRule| Channel::new(rule.name.clone(), rule.unit.clone());
     DatasetDraft {
         name: rules.name.clone(),
@@ -220,11 +195,24 @@ pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
         outputs: rules.outputs.iter().map(channel).collect(),
         on_axis: rules.on_axis.clone(),
         band: rules.band,
-        conditions: conditions.iter().map(|(id, parts)| condition_of(*id, parts)).collect(),
+        conditions: by_condition(parts).into_iter().map(|(id, parts)| condition_of(id, &parts)).collect(),
     }
 }
 
-fn condition_of(id: i64, parts: &[&Part]) -> ConditionDraft {
+/// The models that are taken, each with its place among all, by their conditions.
+fn by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<(usize, &Part)>> {
+    let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
+    for (index, part) in parts.iter().enumerate().filter(|(_, part)| !part.row.left_out) {
+        if let Some(condition) = part.row.condition {
+            conditions.entry(condition).or_default().push((index, part));
+        }
+    }
+    conditions
+}
+
+fn condition_of(id: i64, parts: &[(usize, &Part)]) -> ConditionDraft {
+    let parts: Vec<&Part> = parts.iter().map(|(_, part)| *part).collect();
+    let parts = parts.as_slice();
     fn said<T: Clone>(parts: &[&Part], of: impl Fn(&Row) -> &Option<T>) -> Option<T> {
         parts.iter().find_map(|part| of(&part.row).clone())
     }
@@ -386,7 +374,15 @@ pub(super) fn converted(
     outputs: &[Option<ChannelUse>],
 ) -> ModelDraft {
     let [a, b, c, d] = &model.matrices;
-    let response = model.response.as_ref().map(|response| converted_response(response, inputs, outputs));
+    let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
+    let response = model.response.as_ref().map(|response| ResponseDraft {
+        omega: response.omega.clone(),
+        re: table(&response.re, true),
+        im: table(&response.im, true),
+        coherence: response.coherence.as_ref().map(|array| table(array, false)),
+        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false)),
+        estimate: response.estimate,
+    });
     let timing = Timing {
         sample_time_s: model.timing.sample_time_s,
         input_delays_s: model.timing.input_delays_s.as_ref().map(|delays| chosen(delays, inputs)),
@@ -398,8 +394,8 @@ pub(super) fn converted(
     // A factor moves a curve in decibels and leaves the width of its band.
     let bands = model.bands.as_ref().map(|bands| BandsDraft {
         omega: bands.omega.clone(),
-        sd_db: picked(&bands.sd_db, (inputs, outputs), false),
-        sd_deg: picked(&bands.sd_deg, (inputs, outputs), false),
+        sd_db: table(&bands.sd_db, false),
+        sd_deg: table(&bands.sd_deg, false),
     });
     ModelDraft { matrices: [a.clone(), b, c, d], response, timing, bands, ..model.clone() }
 }
@@ -428,22 +424,6 @@ fn rows(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
 
 fn scaled(value: f64, times: f64, over: f64) -> f64 {
     if times == over { value } else { value * times / over }
-}
-
-fn converted_response(
-    response: &ResponseDraft,
-    inputs: &[Option<ChannelUse>],
-    outputs: &[Option<ChannelUse>],
-) -> ResponseDraft {
-    let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
-    ResponseDraft {
-        omega: response.omega.clone(),
-        re: table(&response.re, true),
-        im: table(&response.im, true),
-        coherence: response.coherence.as_ref().map(|array| table(array, false)),
-        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false)),
-        estimate: response.estimate,
-    }
 }
 
 /// The table of the dataset's channels, converted or as it is; zero where a channel is missing.

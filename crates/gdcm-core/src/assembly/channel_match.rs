@@ -25,10 +25,10 @@ pub struct ChannelMatch {
 }
 
 impl ChannelMatch {
-    /// Matches the channels of one side; `side` is "input" or "output", `said` the signs that are said of channels, `partial` lets
+    /// Matches the channels of one side; `said` are the signs that are said of channels, `partial` lets
     /// channels be missing.
     pub fn of(
-        side: &'static str,
+        side: ChannelSide,
         labels: &[ChannelLabel],
         rules: &[ChannelRule],
         (units, said): (&[UnitRule], &BTreeMap<String, f64>),
@@ -57,13 +57,7 @@ impl ChannelMatch {
     }
 
     /// The channel of the file that is `rule`'s: of its very name, or else one that the field, or the rule, calls the same.
-    fn find(
-        &mut self,
-        side: &'static str,
-        labels: &[ChannelLabel],
-        rule: &ChannelRule,
-        partial: bool,
-    ) -> Option<usize> {
+    fn find(&mut self, side: ChannelSide, labels: &[ChannelLabel], rule: &ChannelRule, partial: bool) -> Option<usize> {
         let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let indices = labels.iter().enumerate();
             indices.filter(|(_, label)| label.name.as_deref().is_some_and(is_it)).map(|(index, _)| index).collect()
@@ -347,7 +341,7 @@ mod tests {
     fn channels_are_found_by_name_in_whatever_order_and_converted() {
         let rules = [rule("P", "deg/s"), rule("NZ", "m/s^2")];
         let labels = [label("nz", "g"), label("roll rate", "rad/s"), label("q", "rad/s")];
-        let found = ChannelMatch::of("output", &labels, &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &none()), false);
         assert!(found.problems.is_empty(), "{:?}", found.problems);
         let uses: Vec<(usize, f64)> = found.uses.iter().flatten().map(|used| (used.index, used.factor)).collect();
         assert_eq!(uses, [(1, 180.0 / std::f64::consts::PI), (0, 9.806_65)]);
@@ -356,13 +350,13 @@ mod tests {
     #[test]
     fn a_unit_that_is_not_said_is_asked_for_and_never_guessed() {
         let rules = [rule("LON", "%")];
-        let found = ChannelMatch::of("input", &[label("lon", "")], &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &rules, (&[], &none()), false);
         assert_eq!(found.problems, [ProblemKind::UnitOfFile { channel: "LON".into() }]);
         let said = [ChannelRule { unit_in_files: Some("in".into()), ..rule("LON", "%") }];
-        let found = ChannelMatch::of("input", &[label("lon", "")], &said, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[], &none()), false);
         assert!(matches!(&found.problems[..], [ProblemKind::Conversion { .. }]));
         let factor = UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.5 };
-        let found = ChannelMatch::of("input", &[label("lon", "")], &said, (&[factor], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[factor], &none()), false);
         assert_eq!(found.uses[0].as_ref().map(|used| used.factor), Some(8.5));
     }
 
@@ -370,20 +364,20 @@ mod tests {
     fn channels_without_names_are_taken_in_order_only_if_there_are_as_many() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let unnamed = |count| vec![ChannelLabel { name: None, unit: Some("%".into()) }; count];
-        let found = ChannelMatch::of("input", &unnamed(2), &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(2), &rules, (&[], &none()), false);
         assert!(found.problems.is_empty() && found.notes.len() == 1);
-        let found = ChannelMatch::of("input", &unnamed(3), &rules, (&[], &none()), false);
-        assert_eq!(found.problems, [ProblemKind::Unnamed { side: "input", expected: 2, found: 3 }]);
+        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(3), &rules, (&[], &none()), false);
+        assert_eq!(found.problems, [ProblemKind::Unnamed { side: ChannelSide::Input, expected: 2, found: 3 }]);
     }
 
     #[test]
     fn two_channels_that_can_be_the_same_are_asked_about_unless_one_has_the_very_name() {
         let rules = [rule("P", "deg/s")];
         let both = [label("p", "deg/s"), label("roll rate", "deg/s")];
-        let found = ChannelMatch::of("output", &both, &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Output, &both, &rules, (&[], &none()), false);
         assert!(matches!(&found.problems[..], [ProblemKind::AmbiguousChannel { .. }]));
         let exact = [label("P", "deg/s"), label("roll rate", "deg/s")];
-        assert!(ChannelMatch::of("output", &exact, &rules, (&[], &none()), false).problems.is_empty());
+        assert!(ChannelMatch::of(ChannelSide::Output, &exact, &rules, (&[], &none()), false).problems.is_empty());
     }
 
     #[test]
@@ -392,7 +386,7 @@ mod tests {
         let factors = |name: &str, said: &[(&str, f64)]| {
             let labels = [label(name, "m/s2"), label("yaw", "deg/s")];
             let said = said.iter().map(|(name, sign)| ((*name).to_owned(), *sign)).collect();
-            let found = ChannelMatch::of("output", &labels, &rules, (&[], &said), false);
+            let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &said), false);
             (found.uses.iter().flatten().map(|used| used.factor).collect::<Vec<_>>(), found.problems)
         };
         let asked = ProblemKind::Sign { channel: "NZ".into(), found: "az".into() };

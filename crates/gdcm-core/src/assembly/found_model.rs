@@ -67,6 +67,11 @@ impl FoundModel {
         }
     }
 
+    /// Its inputs or its outputs.
+    fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
+        side.of(&self.inputs, &self.outputs)
+    }
+
     /// The measured response, where it is one.
     pub fn response(&self) -> Option<&ResponseDraft> {
         self.draft.response.as_ref()
@@ -173,8 +178,7 @@ pub fn standard_on_axis(output: &str, input: &str) -> bool {
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
 /// a helicopter as far as there are such channels. What the files do not say stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
-    let inputs = channels(models, "input", |model| &model.inputs);
-    let outputs = channels(models, "output", |model| &model.outputs);
+    let (inputs, outputs) = (channels(models, ChannelSide::Input), channels(models, ChannelSide::Output));
     let find = |channels: &[ChannelRule], name: &str| {
         channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
     };
@@ -184,8 +188,8 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
 }
 
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
-fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<ChannelLabel>) -> Vec<ChannelRule> {
-    let named = |model: &FoundModel| of(model).iter().filter(|label| label.name.is_some()).count();
+fn channels(models: &[FoundModel], side: ChannelSide) -> Vec<ChannelRule> {
+    let named = |model: &FoundModel| model.labels(side).iter().filter(|label| label.name.is_some()).count();
     let mut order: Vec<&FoundModel> = models.iter().collect();
     order.sort_by_key(|model| std::cmp::Reverse(named(model)));
     let first_is_measured = order.first().is_some_and(|model| model.response().is_some());
@@ -193,7 +197,7 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
     for model in order {
         // Models with matrices have all channels of the dataset; measured responses may have one each.
         let is_open = channels.is_empty() || (model.response().is_some() && first_is_measured);
-        for label in of(model) {
+        for label in model.labels(side) {
             // The dataset's channel has the name without the marks of a sign.
             let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else { continue };
             let name = &name;
@@ -210,7 +214,7 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
     // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
     let all_unnamed = models.iter().filter(|model| model.response().is_none()).all(|model| named(model) == 0);
     if channels.is_empty() || all_unnamed {
-        let count = models.iter().map(|model| of(model).len()).max().unwrap_or(0);
+        let count = models.iter().map(|model| model.labels(side).len()).max().unwrap_or(0);
         let missing = channels.len() + 1..=count;
         channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
     }

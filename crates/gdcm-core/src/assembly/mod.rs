@@ -19,7 +19,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dataset::{ConditionRecord, ModelDraft, Origin, ResponseDraft};
+use crate::dataset::{ChannelSide, ConditionRecord, ModelDraft, Origin, ResponseDraft};
 use crate::units::number;
 
 pub use assembly::*;

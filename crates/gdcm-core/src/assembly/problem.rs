@@ -35,8 +35,8 @@ pub enum ProblemKind {
     /// A channel that the model does not have.
     #[error("the model has no {side} {channel}; it has {found}")]
     NoChannel {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel of the dataset.
         channel: String,
         /// What the file has, in words.
@@ -73,8 +73,8 @@ pub enum ProblemKind {
     /// Two channels of the model are called the same.
     #[error("two {side}s of the model can be {channel}: {found}; say which")]
     AmbiguousChannel {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel of the dataset.
         channel: String,
         /// Their names.
@@ -83,8 +83,8 @@ pub enum ProblemKind {
     /// Channels without names, and another number of them than the dataset has.
     #[error("the model has {found} {side}s without names, the dataset has {expected}; say their names")]
     Unnamed {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// How many the dataset has.
         expected: usize,
         /// How many the model has.
@@ -93,8 +93,8 @@ pub enum ProblemKind {
     /// More or fewer names are said of a model's channels than it has.
     #[error("{said} names are said for the {found} {side}s of the model; say one for each, in the file's order")]
     Names {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// How many names.
         said: usize,
         /// How many channels.

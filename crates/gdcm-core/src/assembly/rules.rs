@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
 
-use crate::dataset::ChannelSide;
 use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;
 
@@ -278,19 +277,9 @@ pub enum PatternError {
     },
 }
 
-const GROUPS: [&str; 11] = [
-    "condition",
-    "airspeed_kt",
-    "altitude",
-    "altitude_ft",
-    "weight",
-    "mass_kg",
-    "method",
-    "name",
-    "nominal",
-    "perturbed",
-    "identified",
-];
+/// What groups are named, besides those of offsets.
+const GROUPS: &str =
+    "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
 /// What a group of an offset begins with.
 const OFFSET: &str = "by_";
 
@@ -304,7 +293,8 @@ impl NamePattern {
         let built = RegexBuilder::new(pattern).case_insensitive(true).size_limit(MOST_MEMORY).build();
         let regex =
             built.map_err(|error| wrong(error.to_string().lines().last().unwrap_or_default().trim().to_owned()))?;
-        let unknown = regex.capture_names().flatten().find(|name| !GROUPS.contains(name) && !name.starts_with(OFFSET));
+        let is_known = |name: &&str| name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == *name);
+        let unknown = regex.capture_names().flatten().find(|name| !is_known(name));
         match unknown {
             Some(group) => Err(PatternError::Group { pattern: pattern.to_owned(), group: group.to_owned() }),
             None => Ok(Self { regex }),

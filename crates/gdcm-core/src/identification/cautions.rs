@@ -271,6 +271,26 @@ pub struct CautionNote {
 }
 
 impl CautionNote {
+    pub(super) fn of(code: &'static str) -> Self {
+        Self { code, ..Self::default() }
+    }
+
+    pub(super) fn record(self, name: &str) -> Self {
+        Self { records: vec![name.to_owned()], ..self }
+    }
+
+    pub(super) fn channel<'s>(self, signal: impl Into<Option<&'s Signal>>) -> Self {
+        Self { channel: signal.into().map(|signal| signal.name.clone()), ..self }
+    }
+
+    fn pair(self, channels: [&Signal; 2]) -> Self {
+        Self { pair: Some(channels.map(|signal| signal.name.clone())), ..self }
+    }
+
+    fn band(self, ends: [f64; 2]) -> Self {
+        Self { band_rad_s: Some(ends), ..self }
+    }
+
     /// What it says in three words or fewer, for a mark.
     #[must_use]
     pub fn mark(&self) -> &'static str {
@@ -308,47 +328,35 @@ impl IdentificationCaution {
     /// The caution with what it is about.
     #[must_use]
     pub fn note(&self) -> CautionNote {
-        let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
-        let record = |code, name: &str| CautionNote { records: vec![name.to_owned()], ..of(code) };
-        let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
-        match self {
-            Self::Records(caution) => CautionNote { text: self.to_string(), ..caution.note() },
-            Self::Short { lowest, periods, .. } => {
-                CautionNote { band_rad_s: Some([*lowest, lowest * (5.0 / periods).max(1.0)]), ..of("short") }
-            }
-            Self::NotSwept { signal, .. } => channel("not-swept", signal),
+        let of = CautionNote::of;
+        let note = match self {
+            Self::Records(caution) => caution.note(),
+            Self::Short { lowest, periods, .. } => of("short").band([*lowest, lowest * (5.0 / periods).max(1.0)]),
+            Self::NotSwept { signal, .. } => of("not-swept").channel(signal),
             Self::MovedTogether { .. } => of("collinear-inputs"),
-            Self::BandNotShown { shown, .. } => CautionNote { band_rad_s: Some(*shown), ..of("band-narrowed") },
-            Self::Vibration { signal, .. } => channel("vibration", signal),
-            Self::Inadequate { record: name, signal, .. } => {
-                CautionNote { records: vec![name.clone()], ..channel("inadequate", signal) }
-            }
-            Self::UnlikeRecord { name, .. } => record("record", name),
+            Self::BandNotShown { shown, .. } => of("band-narrowed").band(*shown),
+            Self::Vibration { signal, .. } => of("vibration").channel(signal),
+            Self::Inadequate { record, signal, .. } => of("inadequate").record(record).channel(signal),
+            Self::UnlikeRecord { name, .. } => of("record").record(name),
             Self::Contradiction { records, .. } => {
                 let (code, channel) = common_fault(records);
-                let names = records.iter().map(|of| of.name.clone()).collect();
-                CautionNote { records: names, channel: channel.map(|signal| signal.name.clone()), ..of(code) }
+                let records = records.iter().map(|of| of.name.clone()).collect();
+                CautionNote { records, ..of(code).channel(channel) }
             }
             Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
             Self::Feedback { .. } => of("feedback-some"),
-            Self::LeavesPoints { output, input, band, .. } => CautionNote {
-                pair: Some([output.name.clone(), input.name.clone()]),
-                band_rad_s: Some(*band),
-                ..of("points")
-            },
-            Self::OrderLimit { narrower, .. } => CautionNote { band_rad_s: Some(*narrower), ..of("order-limit") },
+            Self::LeavesPoints { output, input, band, .. } => of("points").pair([output, input]).band(*band),
+            Self::OrderLimit { narrower, .. } => of("order-limit").band(*narrower),
             Self::HeldOut { records, .. } => CautionNote { records: records.clone(), ..of("held-out") },
             Self::Reweighed { .. } => of("reweighed"),
             Self::NotValidated { .. } => of("not-validated"),
             Self::Unstable { .. } => of("unstable"),
-            Self::PairsNotIdentified { pairs } => {
-                let pair = pairs.first().filter(|_| pairs.len() == 1);
-                CautionNote {
-                    pair: pair.map(|[output, input]| [output.name.clone(), input.name.clone()]),
-                    ..of("not-identified")
-                }
-            }
-        }
+            Self::PairsNotIdentified { pairs } => match pairs.as_slice() {
+                [[output, input]] => of("not-identified").pair([output, input]),
+                _ => of("not-identified"),
+            },
+        };
+        CautionNote { text: self.to_string(), ..note }
     }
 }
 

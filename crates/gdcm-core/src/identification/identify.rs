@@ -129,7 +129,7 @@ fn report(
     let is_direct = options.references == 0;
     // Of inputs that were moved only together nothing tells what is fed back.
     let is_told = is_direct && !data.cautions.iter().any(IdentificationCaution::is_of_collinear_inputs);
-    let feedback = Some(()).filter(|()| is_told).and_then(|()| Feedback::of(data, &fit.model, options.band, executor));
+    let feedback = if is_told { Feedback::of(data, &fit.model, options.band, executor) } else { None };
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
     let bands = known.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;

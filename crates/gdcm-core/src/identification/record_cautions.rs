@@ -335,25 +335,19 @@ pub(super) fn output_cautions(records: &[FlightRecord], preparation: &Preparatio
 }
 
 impl RecordCaution {
-    /// The caution with what it is about.
+    /// What it is about, but for its words.
     pub(super) fn note(&self) -> CautionNote {
-        let of = |code: &'static str| CautionNote { code, text: self.to_string(), ..CautionNote::default() };
-        let record = |code, name: &str| CautionNote { records: vec![name.to_owned()], ..of(code) };
-        let channel = |code, signal: &Signal| CautionNote { channel: Some(signal.name.clone()), ..of(code) };
+        let of = CautionNote::of;
         match self {
-            Self::Resampled { record: name, .. } => record("resampled", name),
-            Self::SegmentDropped { record: name, .. } | Self::RecordUnused { record: name } => record("gap", name),
-            Self::SampleHold { signal, .. } => channel("held", signal),
-            Self::UnlikelyUnit { signal, .. } => channel("unit", signal),
-            Self::MovedTogether { signals, .. } => channel("collinear-inputs", &signals[1]),
-            Self::Copy { copy, .. } => channel("copy", copy),
-            Self::AtLimit { record: name, signal, .. } => {
-                CautionNote { records: vec![name.clone()], ..channel("clipped", signal) }
-            }
-            Self::Stuck { record: name, signals, .. } => {
-                CautionNote { channel: signals.first().map(|signal| signal.name.clone()), ..record("stuck", name) }
-            }
-            Self::Coarse { signal, .. } => channel("coarse", signal),
+            Self::Resampled { record, .. } => of("resampled").record(record),
+            Self::SegmentDropped { record, .. } | Self::RecordUnused { record } => of("gap").record(record),
+            Self::SampleHold { signal, .. } => of("held").channel(signal),
+            Self::UnlikelyUnit { signal, .. } => of("unit").channel(signal),
+            Self::MovedTogether { signals: [_, second], .. } => of("collinear-inputs").channel(second),
+            Self::Copy { copy, .. } => of("copy").channel(copy),
+            Self::AtLimit { record, signal, .. } => of("clipped").record(record).channel(signal),
+            Self::Stuck { record, signals, .. } => of("stuck").record(record).channel(signals.first()),
+            Self::Coarse { signal, .. } => of("coarse").channel(signal),
         }
     }
 }

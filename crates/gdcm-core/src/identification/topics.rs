@@ -16,7 +16,7 @@ pub struct Topic {
     /// The samples between two gaps; at least one run.
     runs: Vec<Range<usize>>,
     /// Samples in a second, gaps left out.
-    rate_hz: f64,
+    pub rate_hz: f64,
 }
 
 /// A stamp that is further on than this many of the median step begins behind a gap: 3 missing samples are bridged (M14.1).
@@ -62,11 +62,6 @@ impl Topic {
         });
         let rate_hz = if length_s > 0.0 { steps as f64 / length_s } else { 0.0 };
         Ok(Self { name: name.to_owned(), time_s: times, values: kept, runs, rate_hz })
-    }
-
-    /// Samples in a second, gaps left out.
-    pub fn rate_hz(&self) -> f64 {
-        self.rate_hz
     }
 
     /// First and last stamp \[s\].
@@ -296,7 +291,7 @@ mod tests {
         let stamps = shaken(1500, 0.004, 0.0008);
         let values: Vec<f64> = stamps.iter().map(|t| signal(*t)).collect();
         let topic = Topic::new("v", &stamps, &values, false).unwrap();
-        assert!((topic.rate_hz() - 250.0).abs() < 0.1);
+        assert!((topic.rate_hz - 250.0).abs() < 0.1);
         let asked: Vec<f64> = (0..100).map(|k| 2.0 + 0.02 * f64::from(k)).collect();
         let found = topic.at(&asked, number(&answer["wc"]));
         let expected = numbers(&answer["expected"]);

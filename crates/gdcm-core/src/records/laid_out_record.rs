@@ -18,36 +18,24 @@ pub struct RecordGuess {
     pub airspeed_kt: Option<f64>,
 }
 
-/// What names of sweeps, of several sines, of steps, and of records for validation hold.
-const SWEEPS: [&str; 3] = ["sweep", "chirp", "swp"];
-const MULTISINES: [&str; 3] = ["multisine", "schroeder", "msine"];
-const STEPS: [&str; 4] = ["3211", "doublet", "dblt", "step"];
+/// What names of manoeuvres, and of records for validation, hold.
+const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
+    (RecordKind::Sweep, &["sweep", "chirp", "swp"]),
+    (RecordKind::Multisine, &["multisine", "schroeder", "msine"]),
+    (RecordKind::ThreeTwoOneOne, &["3211", "doublet", "dblt", "step"]),
+];
 const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdout", "heldout"];
 /// Words that say so too, but stand in others ("value", "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 /// What names of recorded references end with: pilot's and position references, setpoints, injected signals; short ones stand alone.
-const REFERENCES: [&str; 13] = [
-    "ref",
-    "reference",
-    "cmd",
-    "command",
-    "sp",
-    "setpoint",
-    "des",
-    "desired",
-    "targ",
-    "target",
-    "chirp",
-    "excitation",
-    "x0",
-];
+const REFERENCES: &str = "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
 
 /// Whether a word of a name says that it is a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
 fn names_reference(name: &str) -> bool {
     let lower = name.to_lowercase();
     let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
-    words.any(|word| REFERENCES.iter().any(|end| word == *end || end.len() > 2 && word.ends_with(end)))
+    words.any(|word| REFERENCES.split(' ').any(|end| word == end || end.len() > 2 && word.ends_with(end)))
 }
 
 impl RecordGuess {
@@ -70,15 +58,7 @@ impl RecordGuess {
         // "3-2-1-1" and "hold_out" are "3211" and "holdout".
         let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
-        let kind = if holds(&SWEEPS) {
-            RecordKind::Sweep
-        } else if holds(&MULTISINES) {
-            RecordKind::Multisine
-        } else if holds(&STEPS) {
-            RecordKind::ThreeTwoOneOne
-        } else {
-            RecordKind::Other
-        };
+        let kind = MANOEUVRES.into_iter().find(|(_, words)| holds(words)).map_or(RecordKind::Other, |(kind, _)| kind);
         let mut words = lower.split(|c: char| !c.is_alphabetic());
         let held_out = holds(&VALIDATION) || words.any(|word| VALIDATION_WORDS.contains(&word));
         let mut row = Row::default();

@@ -60,8 +60,8 @@ pub enum LayoutProblem {
     /// No column is this channel.
     #[error("no column is the {side} {channel}; say which is (columns: {found})")]
     NoColumn {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel.
         channel: String,
         /// The columns there are.
@@ -70,8 +70,8 @@ pub enum LayoutProblem {
     /// Several columns can be this channel.
     #[error("several columns can be the {side} {channel}: {found}; say which is")]
     SeveralColumns {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel.
         channel: String,
         /// Their names.

@@ -44,21 +44,33 @@ pub struct RecordLayout {
 }
 
 impl RecordLayout {
+    /// Every channel, inputs first, with the column that is chosen for it.
+    pub(super) fn uses<'r>(
+        &'r self,
+        channels: &'r RecordChannels,
+    ) -> impl Iterator<Item = (ChannelSide, &'r ChannelRule, Option<ColumnUse>)> {
+        let of_side = |side: ChannelSide| {
+            let uses = side.of(&self.inputs, &self.outputs);
+            let rules = side.of(&channels.inputs, &channels.outputs).iter().enumerate();
+            rules.map(move |(index, rule)| (side, rule, uses.get(index).copied().flatten()))
+        };
+        of_side(ChannelSide::Input).chain(of_side(ChannelSide::Output))
+    }
+
+    /// The channels for which a column is chosen.
+    fn chosen<'r>(&'r self, channels: &'r RecordChannels) -> impl Iterator<Item = (&'r ChannelRule, ColumnUse)> {
+        self.uses(channels).filter_map(|(_, rule, used)| Some((rule, used?)))
+    }
+
     /// Everything that keeps the chosen columns from being used; nothing where [`RecordLayout::flight_record`] gives a record.
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut problems = self.time_problems(table);
-        for (side, rules, uses) in
-            [("input", &channels.inputs, &self.inputs), ("output", &channels.outputs, &self.outputs)]
-        {
-            for (index, rule) in rules.iter().enumerate() {
-                match uses.get(index).copied().flatten() {
-                    Some(used) => problems.extend(channel_problem(table, rule, used)),
-                    None => {
-                        let (channel, found) = (rule.name.clone(), table.column_names());
-                        problems.push(LayoutProblem::NoColumn { side, channel, found });
-                    }
-                }
-            }
+        for (side, rule, used) in self.uses(channels) {
+            let missing = || {
+                let (channel, found) = (rule.name.clone(), table.column_names());
+                Some(LayoutProblem::NoColumn { side, channel, found })
+            };
+            problems.extend(used.map_or_else(missing, |used| channel_problem(table, rule, used)));
         }
         problems.extend(self.shared_columns(table, channels));
         if problems.is_empty() {
@@ -77,8 +89,7 @@ impl RecordLayout {
             let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
-        let (inputs, outputs) = (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
-        let all: Vec<_> = inputs.into_iter().chain(outputs).collect();
+        let all: Vec<_> = self.chosen(channels).collect();
         for (index, (rule, used)) in all.iter().enumerate() {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
             let (channel, column) = (rule.name.clone(), table.quoted(used.column));
@@ -193,9 +204,7 @@ impl RecordLayout {
         guess: &RecordGuess,
         channels: &RecordChannels,
     ) -> ConditionRecord {
-        let sides = [(&channels.inputs, &self.inputs), (&channels.outputs, &self.outputs)];
-        let used = sides.into_iter().flat_map(|(rules, uses)| chosen(rules, uses));
-        let remedies = used.map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
+        let remedies = self.chosen(channels).map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
         ConditionRecord {
             remedies: remedies.filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect(),
             variable: table.source.variable.clone(),
@@ -233,9 +242,7 @@ impl RecordLayout {
             taken.push((column, "the time".to_owned()));
         }
         let mut problems = Vec::new();
-        for (rule, used) in
-            chosen(&channels.inputs, &self.inputs).into_iter().chain(chosen(&channels.outputs, &self.outputs))
-        {
+        for (rule, used) in self.chosen(channels) {
             if let Some((_, second)) = taken.iter().find(|(column, _)| *column == used.column) {
                 let (first, second, column) = (rule.name.clone(), second.clone(), table.quoted(used.column));
                 problems.push(LayoutProblem::OneColumn { first, second, column });
@@ -244,11 +251,6 @@ impl RecordLayout {
         }
         problems
     }
-}
-
-/// The channels for which a column is chosen.
-fn chosen<'r>(rules: &'r [ChannelRule], uses: &[Option<ColumnUse>]) -> Vec<(&'r ChannelRule, ColumnUse)> {
-    rules.iter().zip(uses).filter_map(|(rule, used)| Some((rule, (*used)?))).collect()
 }
 
 fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {

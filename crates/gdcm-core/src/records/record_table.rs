@@ -67,7 +67,7 @@ pub struct RecordSource {
 }
 
 /// A record as its file has it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordTable {
     /// Its name, for people.
     pub name: String,
@@ -99,16 +99,7 @@ pub struct ModeSpan {
 impl RecordTable {
     /// A table of columns, of which nothing else is known.
     pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
-        Self {
-            name: name.into(),
-            columns,
-            named: true,
-            sample_time_s: None,
-            source: RecordSource::default(),
-            notes: Vec::new(),
-            modes: Vec::new(),
-            part_s: None,
-        }
+        Self { name: name.into(), columns, named: true, ..Self::default() }
     }
 
     /// Number of samples; of topics with clocks of their own, of the one that has most.
@@ -148,12 +139,7 @@ impl RecordTable {
 
     /// The names of all columns, no more than a message can bear.
     pub(super) fn column_names(&self) -> String {
-        /// Enough to see what went wrong.
-        const SHOWN: usize = 20;
-        let names: Vec<&str> = self.columns.iter().take(SHOWN).map(|column| column.name.as_str()).collect();
-        let rest = self.columns.len() - names.len();
-        let more = if rest == 0 { String::new() } else { format!(" and {rest} more") };
-        format!("{}{more}", names.join(", "))
+        shown(&self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>())
     }
 }
 
@@ -171,23 +157,8 @@ pub enum Separation {
 }
 
 /// Names of columns that number records.
-const NUMBERS: [&str; 15] = [
-    "record",
-    "records",
-    "recordid",
-    "recordno",
-    "recordnumber",
-    "run",
-    "runid",
-    "runno",
-    "runnumber",
-    "manoeuvre",
-    "maneuver",
-    "segment",
-    "event",
-    "testpoint",
-    "experiment",
-];
+const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
+                       testpoint experiment";
 
 impl Separation {
     /// Fewer samples than these are no record of several in a file.
@@ -200,9 +171,8 @@ impl Separation {
         }
         let numbers = |index: &usize| {
             let column = &table.columns[*index];
-            let name: String =
-                column.name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-            NUMBERS.contains(&name.as_str()) && {
+            let name = folded_name(&column.name);
+            NUMBERS.split(' ').any(|word| word == name) && {
                 let runs = runs_of(&column.values);
                 runs.len() > 1
                     && runs.iter().all(|run| run.len() >= Self::FEWEST && column.values[run.start].fract() == 0.0)
@@ -391,7 +361,7 @@ fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
     let told = |unit: &'static str| {
         format!(
             " (its steps are {}: {unit} would be too {})",
-            told_step(step),
+            telling(step, 3),
             if step > 1.0 { "long" } else { "short" }
         )
     };
@@ -405,10 +375,6 @@ fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
         return (("days", SECONDS_A_DAY), told("s"));
     }
     (("s", 1.0), " (the file does not say the unit)".to_owned())
-}
-
-fn told_step(step: f64) -> String {
-    crate::units::telling(step, 3)
 }
 
 /// Median of the steps between stamps that follow one another.
@@ -470,8 +436,8 @@ mod tests {
         assert_eq!(Separation::proposed(&log), Separation::None);
     }
 
-    fn table_with(name: &str, unit: Option<&str>, stamps_every: Vec<f64>) -> RecordTable {
-        let column = RecordColumn { unit: unit.map(str::to_owned), ..RecordColumn::new(name, stamps_every) };
+    fn table_with(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
+        let column = RecordColumn { unit: unit.map(str::to_owned), ..RecordColumn::new(name, stamps) };
         RecordTable {
             name: "r".into(),
             columns: vec![RecordColumn::new("time constant", vec![1.0; column.values.len()]), column],
@@ -481,17 +447,17 @@ mod tests {
         }
     }
 
-    fn stamps_every(step: f64) -> Vec<f64> {
+    fn stamps(step: f64) -> Vec<f64> {
         (0..50).map(|sample| 3.0 + step * f64::from(sample)).collect()
     }
 
     #[test]
     fn the_time_is_found_by_its_name_and_by_rising() {
         for name in ["t", "Time", "time_s", "TIME [s]", "Elapsed", "real,_time", "t_ms", "timestamp"] {
-            assert_eq!(TimeBase::find(&table_with(name, None, stamps_every(0.02))), Some(1), "{name}");
+            assert_eq!(TimeBase::find(&table_with(name, None, stamps(0.02))), Some(1), "{name}");
         }
-        assert_eq!(TimeBase::find(&table_with("theta", None, stamps_every(0.02))), Some(0), "by its name only");
-        let mut unnamed = table_with("column 2", None, stamps_every(0.02));
+        assert_eq!(TimeBase::find(&table_with("theta", None, stamps(0.02))), Some(0), "by its name only");
+        let mut unnamed = table_with("column 2", None, stamps(0.02));
         unnamed.named = false;
         assert_eq!(TimeBase::find(&unnamed), None, "its first column does not rise");
         unnamed.columns.swap(0, 1);
@@ -500,7 +466,7 @@ mod tests {
 
     #[test]
     fn the_unit_of_time_is_said_by_the_file_or_by_the_length_of_the_steps() {
-        let seconds = |name, unit, step| match TimeBase::of_column(&table_with(name, unit, stamps_every(step)), 1) {
+        let seconds = |name, unit, step| match TimeBase::of_column(&table_with(name, unit, stamps(step)), 1) {
             (TimeBase::Column { seconds, .. }, words) => (seconds, words),
             _ => panic!("it is a column"),
         };
@@ -522,7 +488,7 @@ mod tests {
 
     #[test]
     fn a_missing_stamp_is_no_number_and_does_not_move_the_median() {
-        let mut gaps = stamps_every(20.0);
+        let mut gaps = stamps(20.0);
         gaps[7] = f64::INFINITY;
         let table_with = table_with("t", Some("ms"), gaps);
         let base = TimeBase::of_column(&table_with, 1).0;

@@ -299,7 +299,8 @@ fn topic_columns(table: &RecordTable, name: &str, seconds: &BTreeMap<String, f64
 }
 
 /// Names in a row, no more than a message can bear.
-fn shown(names: &[&str]) -> String {
+pub(super) fn shown(names: &[&str]) -> String {
+    /// Enough to see what went wrong.
     const SHOWN: usize = 20;
     let more = names.len().saturating_sub(SHOWN);
     let names = names.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");

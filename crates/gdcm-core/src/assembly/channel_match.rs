@@ -146,36 +146,26 @@ impl ChannelMatch {
 
 // Names of channels, of the time and of the sample time, however files write them.
 
-/// Each channel with its other names, all folded (see [`folded_name`]); those such as "elevyoke1" are a flight simulator's. A name stands in one row only.
-const ALIASES: [(&str, &str); 16] = [
-    (
-        "lon",
-        "long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s \
-         theta1s pitchstick elevator loncyc longstick elevyoke1",
-    ),
-    (
-        "lat",
-        "lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick \
-         ailrnyoke1",
-    ),
-    (
-        "ped",
-        "pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal \
-         ruddryoke1",
-    ),
-    ("col", "coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m"),
-    ("p", "rollrate pb pbody omegax"),
-    ("q", "pitchrate qb qbody omegay"),
-    ("r", "yawrate rb rbody omegaz"),
-    ("nx", "ax axb longitudinalacceleration longaccel accx gloadaxial"),
-    ("ny", "ay ayb lateralacceleration lataccel accy gloadside"),
-    ("nz", "az azb verticalacceleration vertaccel normalacceleration loadfactor accz gloadnorml"),
-    ("u", "ub ubody forwardspeed"),
-    ("v", "vb vbody sidewardspeed sidespeed"),
-    ("w", "wb wbody heave verticalspeed heavevelocity"),
-    ("phi", "roll rollangle rollattitude bank bankangle"),
-    ("theta", "pitch pitchangle pitchattitude"),
-    ("psi", "yaw heading yawangle"),
+/// What each channel is called, all folded (see [`folded_name`]), the first name standing for the others; those such as "elevyoke1" are a
+/// flight simulator's. A name stands in one row only.
+const ALIASES: [&str; 16] = [
+    "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
+     pitchstick elevator loncyc longstick elevyoke1",
+    "lat lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick ailrnyoke1",
+    "ped pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal ruddryoke1",
+    "col coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m",
+    "p rollrate pb pbody omegax",
+    "q pitchrate qb qbody omegay",
+    "r yawrate rb rbody omegaz",
+    "nx ax axb longitudinalacceleration longaccel accx gloadaxial",
+    "ny ay ayb lateralacceleration lataccel accy gloadside",
+    "nz az azb verticalacceleration vertaccel normalacceleration loadfactor accz gloadnorml",
+    "u ub ubody forwardspeed",
+    "v vb vbody sidewardspeed sidespeed",
+    "w wb wbody heave verticalspeed heavevelocity",
+    "phi roll rollangle rollattitude bank bankangle",
+    "theta pitch pitchangle pitchattitude",
+    "psi yaw heading yawangle",
 ];
 
 /// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa", "Sample_Time" is "sampletime".
@@ -198,8 +188,9 @@ pub fn folded_name(name: &str) -> String {
 /// The name that stands for all that call the same channel.
 fn canonical(name: &str) -> String {
     let name = folded_name(name);
-    let row = ALIASES.iter().find(|(first, others)| *first == name || others.split(' ').any(|other| other == name));
-    row.map_or(name, |(first, _)| (*first).to_owned())
+    let mut rows = ALIASES.iter().map(|row| row.split(' '));
+    let first = rows.find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
+    first.map_or_else(|| name.clone(), str::to_owned)
 }
 
 /// Whether two names call the same channel: the same but for case and marks, or names that the field uses for one another.
@@ -207,18 +198,6 @@ pub fn same_channel(a: &str, b: &str) -> bool {
     a == b || canonical(a) == canonical(b)
 }
 
-/// The directions that a name may say its channel is positive in, and those against them.
-const DIRECTIONS: [(&str, f64); 9] = [
-    ("up", 1.0),
-    ("right", 1.0),
-    ("forward", 1.0),
-    ("fwd", 1.0),
-    ("down", -1.0),
-    ("dn", -1.0),
-    ("left", -1.0),
-    ("aft", -1.0),
-    ("rearward", -1.0),
-];
 /// Names of the acceleration along the z axis by the axis, which points down in some programs and up in others; those of the load
 /// factor, which is positive up.
 const ALONG_Z: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
@@ -271,7 +250,11 @@ pub fn direction_of(mark: &str) -> Option<f64> {
     };
     let word = word.trim().trim_start_matches("positive").trim_start_matches("pos").trim_start_matches(['.', ' ']);
     let word = word.trim_end_matches("positive").trim_end_matches('+').trim();
-    DIRECTIONS.iter().find(|(known, _)| *known == word).map(|(_, direction)| sign * direction)
+    match word {
+        "up" | "right" | "forward" | "fwd" => Some(sign),
+        "down" | "dn" | "left" | "aft" | "rearward" => Some(-sign),
+        _ => None,
+    }
 }
 
 /// What the numbers of a channel that a file calls `label` are multiplied by to be those of a channel called `channel`: 1 or -1; none
@@ -442,8 +425,7 @@ mod tests {
 
     #[test]
     fn no_name_stands_for_two_channels() {
-        let names: Vec<&str> =
-            ALIASES.iter().flat_map(|(first, others)| std::iter::once(*first).chain(others.split(' '))).collect();
+        let names: Vec<&str> = ALIASES.iter().flat_map(|row| row.split(' ')).collect();
         let unique: BTreeSet<&str> = names.iter().copied().collect();
         assert_eq!(unique.len(), names.len());
         assert!(names.iter().all(|name| folded_name(name) == **name), "they are folded");

@@ -1,7 +1,6 @@
 //! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
 use super::*;
-use std::fmt;
 use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
@@ -246,7 +245,7 @@ const MOST_MEMORY: usize = 1 << 20;
 /// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft`, `weight`, `mass_kg`, `method`, `name` | that |
 /// | `by_roll_deg`, `by_airspeed_kt`, `by_...` | the offset of the trim in the coordinate `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
 /// | `nominal`, `perturbed`, `identified` | anything: the role is this |
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,
 }
@@ -360,12 +359,6 @@ fn offset(text: &str) -> Option<f64> {
     let (digits, sign) = signed.unwrap_or((&text, 1.0));
     let value: f64 = digits.trim_start_matches(['_', ' ']).parse().ok()?;
     value.is_finite().then_some(sign * value)
-}
-
-impl fmt::Debug for NamePattern {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "NamePattern({})", self.as_str())
-    }
 }
 
 impl PartialEq for NamePattern {

@@ -53,10 +53,7 @@ pub struct PairTable<T> {
 impl<T> PairTable<T> {
     /// The table whose entry of each response is `entry(pair)`.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Pair) -> T) -> Self {
-        let entries = (0..outputs)
-            .flat_map(|output| (0..inputs).map(move |input| Pair { output, input }))
-            .map(&mut entry)
-            .collect();
+        let entries = pairs(outputs, inputs).map(&mut entry).collect();
         Self { outputs, inputs, entries }
     }
 
@@ -84,8 +81,7 @@ impl<T> PairTable<T> {
 
     /// Every response, row by row.
     pub fn pairs(&self) -> impl Iterator<Item = Pair> + use<T> {
-        let inputs = self.inputs;
-        (0..self.outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
+        pairs(self.outputs, self.inputs)
     }
 
     /// Every response with its entry, row by row.
@@ -102,6 +98,10 @@ impl<T> PairTable<T> {
     pub fn map<U>(&self, mut f: impl FnMut(Pair, &T) -> U) -> PairTable<U> {
         PairTable::from_fn(self.outputs, self.inputs, |pair| f(pair, &self[pair]))
     }
+}
+
+fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
+    (0..outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
 }
 
 impl<T: Clone> PairTable<T> {

@@ -72,8 +72,8 @@ impl SpectralLines {
             inputs: spectrum.inputs.clone(),
             outputs: whitened,
             weights,
-            constant: orthonormal(constant),
-            drift: orthonormal(drift),
+            constant: constant.qr().q(),
+            drift: drift.qr().q(),
         }
     }
 
@@ -222,11 +222,6 @@ pub(super) fn whiten(weight: &DMatrix<f64>, x: &[Complex<f64>], mut take: impl F
         }
         take(o, sum);
     }
-}
-
-/// An orthonormal basis of the columns.
-fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
-    columns.qr().q()
 }
 
 /// Takes off every column its projection on an orthonormal basis.

@@ -160,7 +160,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
         let (before, from) = records.split_at_mut(index);
         let record = &mut from[0];
         let Some(flight) = record.used_flight() else { continue };
-        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| same_samples(other, flight));
+        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| is_copy(other, flight));
         let Some(first) = before.iter().find(is_it) else { continue };
         let caution = LayoutCaution::Copy { first: first.table.name.clone() };
         if !record.cautions.contains(&caution) {
@@ -171,7 +171,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
 }
 
 /// Whether all samples are the same to the last bit; the clocks may differ.
-fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
+fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
     let same = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
         a.shape() == b.shape() && a.iter().zip(b.iter()).all(|(a, b)| a.to_bits() == b.to_bits())
     };

@@ -3,8 +3,8 @@
 use super::*;
 use crate::assembly::standard_on_axis;
 use crate::dataset::{
-    Band, BundleKind, Condition, ConditionError, ConditionId, DatasetError, DatasetHeader, Dynamics, FlightState,
-    Model, Origin, PairTable, StateSpace, StateSpaceError,
+    Band, BundleKind, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin,
+    PairTable, StateSpace, StateSpaceError,
 };
 use std::fmt;
 use std::str::FromStr;
@@ -187,20 +187,6 @@ fn split_outside_quotes(text: &str) -> Vec<&str> {
 /// What stands for a unit that nobody says.
 pub const UNSAID_UNIT: &str = "?";
 
-/// Why records do not make a dataset.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RecordDatasetError {
-    /// The channels, or the conditions.
-    #[error(transparent)]
-    Dataset(#[from] DatasetError),
-    /// The records, or the models that stand for those to come.
-    #[error(transparent)]
-    Condition(#[from] ConditionError),
-    /// A model that stands for one to come.
-    #[error(transparent)]
-    Model(#[from] StateSpaceError),
-}
-
 /// A dataset of one condition with these records and without models: one that answers nothing, `y = 0 u`, stands in each bundle until
 /// there is another, and no analysis has a result before.
 ///
@@ -208,13 +194,13 @@ pub enum RecordDatasetError {
 /// place.
 ///
 /// # Errors
-/// [`RecordDatasetError`]: no input or no output, a name that stands twice.
+/// No input or no output, a name that stands twice.
 pub fn dataset_of_records(
     name: &str,
     channels: &RecordChannels,
     band: Band,
     records: Vec<ConditionRecord>,
-) -> Result<Dataset, RecordDatasetError> {
+) -> Result<Dataset, DraftFault> {
     let channel = |rule: &ChannelRule| {
         let unit = if rule.unit.is_empty() { UNSAID_UNIT } else { &rule.unit };
         Channel::new(rule.name.clone(), unit)

@@ -219,19 +219,16 @@ impl RecordLayout {
 
     fn time_problems(&self, table: &RecordTable) -> Vec<LayoutProblem> {
         match self.time {
-            None => vec![LayoutProblem::NoTime { found: table.column_names() }],
             Some(TimeBase::Topics) => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) if step_s.is_finite() && step_s > 0.0 => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime { step_s }],
-            Some(TimeBase::Column { column, .. }) if column >= table.columns.len() => {
-                vec![LayoutProblem::NoTime { found: table.column_names() }]
-            }
-            Some(time @ TimeBase::Column { column, .. }) => {
+            Some(time @ TimeBase::Column { column, .. }) if column < table.columns.len() => {
                 let quoted = table.quoted(column);
                 let step = time.step_s(table).filter(|step_s| *step_s > LONGEST_STEP_S);
                 let step = step.map(|step_s| LayoutProblem::TimeStep { column: quoted.clone(), step_s });
                 order_problem(&time.times_s(table), quoted).into_iter().chain(step).collect()
             }
+            Some(TimeBase::Column { .. }) | None => vec![LayoutProblem::NoTime { found: table.column_names() }],
         }
     }
 
@@ -283,7 +280,8 @@ fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
     first.map(|(sample, before, after)| LayoutProblem::TimeOrder { column, count, samples, sample, before, after })
 }
 
-fn same_samples(first: &[f64], second: &[f64]) -> bool {
+/// Whether numbers are the same, missing ones in the same places.
+pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
     first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
 }
 

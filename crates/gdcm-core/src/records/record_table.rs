@@ -198,7 +198,7 @@ impl Separation {
 impl RecordTable {
     /// The records of the table, each named by what tells it apart. Samples without a number belong to none.
     pub fn separated(self, separation: Separation) -> Vec<RecordTable> {
-        let parts: Vec<(Range<usize>, String)> = match separation {
+        let (parts, why): (Vec<(Range<usize>, String)>, String) = match separation {
             Separation::None => return vec![self],
             Separation::ByColumn(column) => {
                 let Some(numbers) = self.columns.get(column) else { return vec![self] };
@@ -210,20 +210,17 @@ impl RecordTable {
                     let again = if times > 1 { format!(", part {times}") } else { String::new() };
                     (run, format!("{} {}{again}", numbers.name, number(value)))
                 };
-                runs_of(&numbers.values).into_iter().map(named).collect()
+                let runs = runs_of(&numbers.values).into_iter().map(named).collect();
+                (runs, format!("column {} changes", self.quoted(column)))
             }
             Separation::ByTime(column) => {
                 let Some(stamps) = self.columns.get(column) else { return vec![self] };
                 let parts = rising_parts(&stamps.values).into_iter().enumerate();
-                parts.map(|(index, part)| (part, format!("part {}", index + 1))).collect()
+                let parts = parts.map(|(index, part)| (part, format!("part {}", index + 1))).collect();
+                (parts, "the time restarts".to_owned())
             }
         };
-        let why = match separation {
-            Separation::ByColumn(column) => {
-                format!("one of {} records: column {} changes", parts.len(), self.quoted(column))
-            }
-            _ => format!("one of {} records: the time restarts", parts.len()),
-        };
+        let why = format!("one of {} records: {why}", parts.len());
         parts.into_iter().map(|(rows, name)| self.part(rows, &name, &why)).collect()
     }
 

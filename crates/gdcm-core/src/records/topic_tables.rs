@@ -98,7 +98,7 @@ impl RecordTable {
             (Some(a), Some(b)) => a.1.min(b.1) - a.0.max(b.0) > 0.5 * (a.1 - a.0).min(b.1 - b.0),
             _ => false,
         };
-        if !clocks.iter().all(overlaps) || clocks.iter().all(|clock| same_stamps(clock, &clocks[0])) {
+        if !clocks.iter().all(overlaps) || clocks.iter().all(|clock| same_samples(clock, &clocks[0])) {
             return self;
         }
         let ends = times.iter().skip(1).copied().chain([self.columns.len()]).collect::<Vec<_>>();
@@ -181,10 +181,6 @@ fn rises(stamps: &[f64]) -> bool {
     known.len() >= Separation::FEWEST
         && known.windows(2).all(|pair| pair[1] > pair[0])
         && rest.iter().all(|stamp| stamp.is_nan())
-}
-
-fn same_stamps(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
 /// What topics of one log have in common: their file, or else the folder of their files.

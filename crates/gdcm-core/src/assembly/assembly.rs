@@ -129,7 +129,7 @@ impl Assembly {
             let said = self.rules.rows.get(&part.found.key());
             if part.row.role != Some(RowRole::Identified) && said.is_none_or(|said| said.perturbation.is_none()) {
                 let unread = part.row.unread.iter().cloned();
-                problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart { part })));
+                problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart(part))));
             }
             problems.extend(row_problems(part).into_iter().map(|kind| Problem::of(index, kind)));
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);

@@ -65,11 +65,8 @@ pub enum ProblemKind {
         poles: usize,
     },
     /// A part of the name that says how the trim differs and is not understood.
-    #[error("\"{part}\" in its name is not understood: say how its trim differs")]
-    TrimPart {
-        /// The part.
-        part: String,
-    },
+    #[error("\"{0}\" in its name is not understood: say how its trim differs")]
+    TrimPart(String),
     /// Two channels of the model are called the same.
     #[error("two {side}s of the model can be {channel}: {found}; say which")]
     AmbiguousChannel {
@@ -130,11 +127,8 @@ pub enum ProblemKind {
         found: usize,
     },
     /// A condition without identified models.
-    #[error("condition {condition} has no identified model")]
-    NoIdentified {
-        /// The condition.
-        condition: i64,
-    },
+    #[error("condition {0} has no identified model")]
+    NoIdentified(i64),
     /// Two models of a bundle have one name.
     #[error("the name \"{name}\" stands twice among the {bundle} models of condition {condition}")]
     Name {
@@ -241,7 +235,7 @@ pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) ->
         kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
     }
     if count(RowRole::Identified) == 0 {
-        kinds.push(ProblemKind::NoIdentified { condition });
+        kinds.push(ProblemKind::NoIdentified(condition));
     }
     let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
     problems.extend(name_problems(condition, parts));

@@ -61,11 +61,8 @@ pub enum ConditionError {
         value: f64,
     },
     /// A bundle holds no model.
-    #[error("the {bundle} bundle: expected at least one model, found none")]
-    EmptyBundle {
-        /// Which.
-        bundle: BundleKind,
-    },
+    #[error("the {0} bundle: expected at least one model, found none")]
+    EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.
     #[error("the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
     DuplicateName {
@@ -225,7 +222,7 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
 
 fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
     if models.is_empty() {
-        return Err(ConditionError::EmptyBundle { bundle });
+        return Err(ConditionError::EmptyBundle(bundle));
     }
     for (second, model) in models.iter().enumerate() {
         if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {

@@ -20,11 +20,8 @@ pub struct Dataset {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DatasetError {
     /// There are no inputs, no outputs or no conditions.
-    #[error("{list}: expected at least one entry, found none")]
-    Empty {
-        /// `inputs`, `outputs` or `conditions`.
-        list: &'static str,
-    },
+    #[error("{0}: expected at least one entry, found none")]
+    Empty(&'static str),
     /// Two channels of a list share a name.
     #[error("{list}: the name \"{name}\" stands twice; names must differ")]
     DuplicateChannel {
@@ -209,7 +206,7 @@ impl Dataset {
 
 fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), DatasetError> {
     if channels.is_empty() {
-        return Err(DatasetError::Empty { list });
+        return Err(DatasetError::Empty(list));
     }
     for (index, channel) in channels.iter().enumerate() {
         if channels[..index].iter().any(|earlier| earlier.name == channel.name) {
@@ -221,7 +218,7 @@ fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), Datase
 
 fn check_conditions(conditions: &[Condition], expected: (usize, usize)) -> Result<(), DatasetError> {
     if conditions.is_empty() {
-        return Err(DatasetError::Empty { list: "conditions" });
+        return Err(DatasetError::Empty("conditions"));
     }
     for (second, condition) in conditions.iter().enumerate() {
         let id = condition.id();

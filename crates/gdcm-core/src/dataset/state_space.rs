@@ -135,11 +135,8 @@ pub struct Timing {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
     /// A sample time is not finite or not positive.
-    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*value))]
-    SampleTime {
-        /// What stands there.
-        value: f64,
-    },
+    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
+    SampleTime(f64),
     /// A list of delays has another length than there are channels.
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
@@ -195,7 +192,7 @@ impl Timing {
     /// The timing of a model of `outputs` and `inputs`, delays that are all zero left out: such a model is the one without.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
-            return Err(TimingError::SampleTime { value });
+            return Err(TimingError::SampleTime(value));
         }
         Ok(Self {
             sample_time_s: self.sample_time_s,

@@ -187,11 +187,8 @@ pub enum DraftFault {
         input: String,
     },
     /// A model has some matrices, but not all four.
-    #[error("matrix {matrix} is missing; a model needs A, B, C and D")]
-    MissingMatrix {
-        /// `A`, `B`, `C` or `D`.
-        matrix: char,
-    },
+    #[error("matrix {0} is missing; a model needs A, B, C and D")]
+    MissingMatrix(char),
     /// A model has both matrices and frequency data.
     #[error("both matrices and a measured response are given; keep one of them")]
     BothDynamics,
@@ -432,7 +429,7 @@ impl Checker {
         let (p, m) = (self.outputs, self.inputs);
         let [a, b, c, d] = matrices;
         let given = |matrix: char, of: Option<DMatrix<f64>>| {
-            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix { matrix }))
+            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix(matrix)))
         };
         let (a, b, c, d) = (given('A', a)?, given('B', b)?, given('C', c)?, given('D', d)?);
         // Checked before the others are checked against it, so that they are not blamed for it.

@@ -148,18 +148,12 @@ pub enum IdentificationCaution {
         /// The same where the model may move within its own uncertainty.
         normalised: f64,
     },
-    /// The records weigh differently because their turbulence does.
-    #[error("the records are unlike in noise (by {ratio:.1}): they were weighed accordingly")]
-    Reweighed {
-        /// Greatest over least cost per degree of freedom before.
-        ratio: f64,
-    },
+    /// The records weigh differently because their turbulence does: the greatest over the least cost per degree of freedom before.
+    #[error("the records are unlike in noise (by {0:.1}): they were weighed accordingly")]
+    Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
-    #[error("the model was not compared with the held-out records in time: {why}")]
-    NotValidated {
-        /// Why.
-        why: ValidationError,
-    },
+    #[error("the model was not compared with the held-out records in time: {0}")]
+    NotValidated(ValidationError),
     /// An unstable pole that no line shows.
     #[error(
         "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is no finding, and the model \
@@ -173,11 +167,8 @@ pub enum IdentificationCaution {
         highest: f64,
     },
     /// Responses that are not identified.
-    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(pairs))]
-    PairsNotIdentified {
-        /// Output and input of each.
-        pairs: Vec<[Signal; 2]>,
-    },
+    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
+    PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
@@ -194,7 +185,7 @@ impl IdentificationCaution {
             |of: &ContradictingRecord| matches!(of.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0);
         match other {
             Self::UnlikeRecord { record, .. } => records.iter().any(|of| of.record == *record),
-            Self::Reweighed { .. } => true,
+            Self::Reweighed(_) => true,
             Self::NotSwept { .. } => records.iter().any(is_turned),
             _ => false,
         }
@@ -348,10 +339,10 @@ impl IdentificationCaution {
             Self::LeavesPoints { output, input, band, .. } => of("points").pair([output, input]).band(*band),
             Self::OrderLimit { narrower, .. } => of("order-limit").band(*narrower),
             Self::HeldOut { records, .. } => CautionNote { records: records.clone(), ..of("held-out") },
-            Self::Reweighed { .. } => of("reweighed"),
-            Self::NotValidated { .. } => of("not-validated"),
+            Self::Reweighed(_) => of("reweighed"),
+            Self::NotValidated(_) => of("not-validated"),
             Self::Unstable { .. } => of("unstable"),
-            Self::PairsNotIdentified { pairs } => match pairs.as_slice() {
+            Self::PairsNotIdentified(pairs) => match pairs.as_slice() {
                 [[output, input]] => of("not-identified").pair([output, input]),
                 _ => of("not-identified"),
             },

@@ -56,8 +56,7 @@ impl Diagnostics<'_> {
         let named = |&(output, input): &(usize, usize)| {
             [self.options.signal(ChannelSide::Output, output), self.options.signal(ChannelSide::Input, input)]
         };
-        (!pairs.is_empty())
-            .then(|| IdentificationCaution::PairsNotIdentified { pairs: pairs.iter().map(named).collect() })
+        (!pairs.is_empty()).then(|| IdentificationCaution::PairsNotIdentified(pairs.iter().map(named).collect()))
     }
 }
 

@@ -96,15 +96,9 @@ pub enum Cause {
     /// Time jumps from one row to the next.
     RowsMissing,
     /// Channels have no value.
-    SamplesMissing {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    SamplesMissing(Vec<Signal>),
     /// Outputs stood still while others moved.
-    Frozen {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    Frozen(Vec<Signal>),
     /// What is left between two gaps is shorter than the least segment.
     SegmentTooShort {
         /// Its length \[s\].
@@ -147,8 +141,8 @@ impl fmt::Display for Gap {
         match &self.cause {
             Cause::StampsMissing => f.write_str("time stamps missing")?,
             Cause::RowsMissing => f.write_str("rows missing")?,
-            Cause::SamplesMissing { signals } => write!(f, "{} missing", names(signals))?,
-            Cause::Frozen { signals } => write!(f, "{} frozen", names(signals))?,
+            Cause::SamplesMissing(signals) => write!(f, "{} missing", names(signals))?,
+            Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
             Cause::SegmentTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
         }
         f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })

@@ -190,7 +190,7 @@ fn report(
             let settings = ValidationSettings::filtered(options.highest());
             let model = data.in_units(&fit.model).ok_or_else(no_model)?;
             let validation = validate(&model, segments, &settings, executor);
-            validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated { why })).ok()
+            validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated(why))).ok()
         }
     };
     progress.next(1.0, "done")?;
@@ -407,11 +407,8 @@ pub enum IdentificationError {
     #[error("no record is left to fit a model to: hold out fewer")]
     NothingToFit,
     /// Inputs that are copies of each other.
-    #[error("{} move as one in every record: leave out all but one, or fly them apart", names(signals))]
-    InputsDepend {
-        /// The inputs.
-        signals: Vec<Signal>,
-    },
+    #[error("{} move as one in every record: leave out all but one, or fly them apart", names(.0))]
+    InputsDepend(Vec<Signal>),
     /// Outputs whose noise cannot be told apart.
     #[error("the outputs depend on each other so closely that their noise cannot be weighed: leave out the copies")]
     OutputsDepend,

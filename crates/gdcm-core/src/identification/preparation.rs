@@ -278,11 +278,8 @@ pub enum PreparationError {
         least_s: f64,
     },
     /// Channels that never move.
-    #[error("{} never moved in any record: leave {} out", names(signals), if signals.len() == 1 { "it" } else { "them" })]
-    Constant {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
+    Constant(Vec<Signal>),
 }
 
 /// The segments of `records` that can be used, what was used of each record, and what speaks against it (M14, 1).
@@ -324,7 +321,7 @@ pub fn prepare(
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let constant: Vec<Signal> = signals.into_iter().filter(|signal| is_constant(&segments, signal)).collect();
     if !constant.is_empty() {
-        return Err(PreparationError::Constant { signals: constant });
+        return Err(PreparationError::Constant(constant));
     }
     cautions.extend(uses.iter().filter_map(stuck_caution));
     cautions.extend(channel_cautions(records, &segments, preparation));
@@ -397,7 +394,7 @@ fn prepare_record(
         }
     }
     if segments.is_empty() {
-        cautions.push(RecordCaution::RecordUnused { record: record.name.clone() });
+        cautions.push(RecordCaution::RecordUnused(record.name.clone()));
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     let inputs_at_limit = inputs_at_limit(record, preparation);

@@ -292,7 +292,7 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     let vector = eigen.eigenvectors.column(least);
     let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
     let signals = involved.map(|input| options.signal(ChannelSide::Input, input)).collect();
-    Err(IdentificationError::InputsDepend { signals })
+    Err(IdentificationError::InputsDepend(signals))
 }
 
 fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {

@@ -35,11 +35,8 @@ pub enum RecordCaution {
         length_s: f64,
     },
     /// Nothing of a record is used.
-    #[error("{record}: nothing of it could be used")]
-    RecordUnused {
-        /// The record's name.
-        record: String,
-    },
+    #[error("{0}: nothing of it could be used")]
+    RecordUnused(String),
     /// Most consecutive samples of a channel in motion are equal.
     #[error(
         "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. Say which it is: {}or stairs that \
@@ -164,7 +161,7 @@ pub(super) fn channel_cautions(
 /// The outputs that were stuck in a record, by its gaps.
 pub(super) fn stuck_caution(used: &RecordUse) -> Option<RecordCaution> {
     let frozen = used.gaps.iter().filter_map(|gap| match &gap.cause {
-        Cause::Frozen { signals } => Some((signals, gap.end_s - gap.start_s)),
+        Cause::Frozen(signals) => Some((signals, gap.end_s - gap.start_s)),
         _ => None,
     });
     let (mut all, mut seconds) = (BTreeSet::new(), 0.0);
@@ -340,7 +337,7 @@ impl RecordCaution {
         let of = CautionNote::of;
         match self {
             Self::Resampled { record, .. } => of("resampled").record(record),
-            Self::SegmentDropped { record, .. } | Self::RecordUnused { record } => of("gap").record(record),
+            Self::SegmentDropped { record, .. } | Self::RecordUnused(record) => of("gap").record(record),
             Self::SampleHold { signal, .. } => of("held").channel(signal),
             Self::UnlikelyUnit { signal, .. } => of("unit").channel(signal),
             Self::MovedTogether { signals: [_, second], .. } => of("collinear-inputs").channel(second),

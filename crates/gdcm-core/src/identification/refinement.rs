@@ -216,7 +216,7 @@ fn reweighed<'a>(
         Likelihood { segments: likelihood.segments.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
     let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, LEAST_GAIN, progress)?;
-    Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))
+    Ok(Some((weighed, fit, IdentificationCaution::Reweighed(greatest / least))))
 }
 
 #[cfg(test)]

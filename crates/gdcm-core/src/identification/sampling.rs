@@ -143,7 +143,7 @@ impl Track {
         }
         let named = |((from, to, is_frozen, treatment), signals)| {
             let (start, end) = around(clock, from, to);
-            let cause = if is_frozen { Cause::Frozen { signals } } else { Cause::SamplesMissing { signals } };
+            let cause = if is_frozen { Cause::Frozen(signals) } else { Cause::SamplesMissing(signals) };
             Gap { start_s: clock.start_s + start, end_s: clock.start_s + end, cause, treatment }
         };
         (tracks, found.into_iter().map(named).collect())

@@ -189,7 +189,7 @@ impl CommonClock {
         }
         let samples = ((end_s - start_s) * rate + 1e-6).floor() + 1.0;
         if samples > MOST_SAMPLES {
-            return Err(TopicError::TooMany { samples });
+            return Err(TopicError::TooMany(samples));
         }
         let cutoff = (5.0 * TAU * highest_hz).min(0.8 * PI * slowest.min(rate));
         Ok(Self { start_s, rate_hz: rate, samples: samples as usize, cutoff })
@@ -257,13 +257,8 @@ pub enum TopicError {
         second_start_s: f64,
     },
     /// A stamp is so far off that nothing could hold the record.
-    #[error(
-        "the topics would make a record of {samples:.0} samples: a stamp is wrong, or the rate asked for is too high"
-    )]
-    TooMany {
-        /// How many.
-        samples: f64,
-    },
+    #[error("the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high")]
+    TooMany(f64),
 }
 
 #[cfg(test)]

@@ -6,12 +6,9 @@ use crate::identification::TopicError;
 /// Why the columns chosen from a record cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutProblem {
-    /// Nothing says when the samples were taken.
-    #[error("no column gives the time; say which does, or the sample rate (columns: {found})")]
-    NoTime {
-        /// The columns there are.
-        found: String,
-    },
+    /// Nothing says when the samples were taken; the columns there are.
+    #[error("no column gives the time; say which does, or the sample rate (columns: {0})")]
+    NoTime(String),
     /// There is no column of the name asked for.
     #[error("there is no column \"{name}\"; there are {found}")]
     NoSuchColumn {
@@ -52,11 +49,8 @@ pub enum LayoutProblem {
         step_s: f64,
     },
     /// A sample time that is not positive.
-    #[error("the sample time is {} s; it must be a positive number of seconds", number(*step_s))]
-    SampleTime {
-        /// The sample time \[s\].
-        step_s: f64,
-    },
+    #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
+    SampleTime(f64),
     /// No column is this channel.
     #[error("no column is the {side} {channel}; say which is (columns: {found})")]
     NoColumn {

@@ -56,7 +56,7 @@ impl RecordLayout {
         let Proposer { mut notes, problems: told, .. } = proposer;
         // Where something was said of a channel already, that it has no column is no news.
         let rest = layout.problems(table, channels).into_iter().filter(|problem| match problem {
-            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime { .. } => told.is_empty(),
+            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_) => told.is_empty(),
             _ => true,
         });
         let problems = told.iter().cloned().chain(rest).collect();
@@ -107,7 +107,7 @@ impl Proposer<'_> {
             self.notes.push(format!("one sample each {} s, as the file says", number(step_s)));
             return Some(TimeBase::SampleTime(step_s));
         }
-        self.problems.push(LayoutProblem::NoTime { found: table.column_names() });
+        self.problems.push(LayoutProblem::NoTime(table.column_names()));
         None
     }
 

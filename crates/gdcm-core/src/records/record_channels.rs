@@ -96,17 +96,11 @@ pub struct SaidChannel {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelListError {
     /// A part of it is no channel.
-    #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{found}\"")]
-    NoChannel {
-        /// The part.
-        found: String,
-    },
+    #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{0}\"")]
+    NoChannel(String),
     /// A channel stands twice.
-    #[error("{name} stands twice")]
-    Twice {
-        /// The channel.
-        name: String,
-    },
+    #[error("{0} stands twice")]
+    Twice(String),
 }
 
 impl SaidChannel {
@@ -134,7 +128,7 @@ impl FromStr for SaidChannel {
         let bracket = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('[')).filter(|(_, unit)| !is_index(unit));
         let (name, unit) = bracket.map_or((name, ""), |(name, unit)| (name.trim(), unit.trim()));
         if name.is_empty() || column.is_some_and(str::is_empty) {
-            return Err(ChannelListError::NoChannel { found: text.to_owned() });
+            return Err(ChannelListError::NoChannel(text.to_owned()));
         }
         Ok(Self { name: name.to_owned(), unit: unit.to_owned(), column: column.map(str::to_owned) })
     }
@@ -148,7 +142,7 @@ impl FromStr for ChannelList {
             split_outside_quotes(text).into_iter().map(str::parse).collect::<Result<_, _>>()?;
         let is_again = |at: &usize| channels[..*at].iter().any(|other| other.name == channels[*at].name);
         match (0..channels.len()).find(is_again) {
-            Some(at) => Err(ChannelListError::Twice { name: channels[at].name.clone() }),
+            Some(at) => Err(ChannelListError::Twice(channels[at].name.clone())),
             None => Ok(Self { channels }),
         }
     }

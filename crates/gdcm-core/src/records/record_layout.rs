@@ -221,14 +221,14 @@ impl RecordLayout {
         match self.time {
             Some(TimeBase::Topics) => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) if step_s.is_finite() && step_s > 0.0 => Vec::new(),
-            Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime { step_s }],
+            Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime(step_s)],
             Some(time @ TimeBase::Column { column, .. }) if column < table.columns.len() => {
                 let quoted = table.quoted(column);
                 let step = time.step_s(table).filter(|step_s| *step_s > LONGEST_STEP_S);
                 let step = step.map(|step_s| LayoutProblem::TimeStep { column: quoted.clone(), step_s });
                 order_problem(&time.times_s(table), quoted).into_iter().chain(step).collect()
             }
-            Some(TimeBase::Column { .. }) | None => vec![LayoutProblem::NoTime { found: table.column_names() }],
+            Some(TimeBase::Column { .. }) | None => vec![LayoutProblem::NoTime(table.column_names())],
         }
     }
 

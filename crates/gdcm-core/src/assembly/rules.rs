@@ -194,22 +194,20 @@ impl Rules {
             channel.aliases.push(old.clone());
         }
         for (output, input) in &mut self.on_axis {
-            let of_side = if side == ChannelSide::Input { input } else { output };
+            let of_side = side.of(input, output);
             if *of_side == old {
                 of_side.clone_from(&name);
             }
         }
-        let others = if side == ChannelSide::Input { &self.outputs } else { &self.inputs };
-        let pair = |other: &ChannelRule| match side {
-            ChannelSide::Input => (other.name.clone(), name.clone()),
-            ChannelSide::Output => (name.clone(), other.name.clone()),
+        let of_new = |other: &ChannelRule| {
+            let (other, name) = (other.name.clone(), name.clone());
+            if side == ChannelSide::Input { (other, name) } else { (name, other) }
         };
-        let pairs: Vec<_> = others.iter().map(pair).filter(|(output, input)| standard_on_axis(output, input)).collect();
-        pairs.into_iter().for_each(|pair| {
-            if !self.on_axis.contains(&pair) {
-                self.on_axis.push(pair)
+        for pair in side.of(&self.outputs, &self.inputs).iter().map(of_new) {
+            if standard_on_axis(&pair.0, &pair.1) && !self.on_axis.contains(&pair) {
+                self.on_axis.push(pair);
             }
-        });
+        }
         self.units.iter_mut().filter(|unit| unit.channel == old).for_each(|unit| unit.channel.clone_from(&name));
         let of_models = self.rows.values_mut().filter_map(|row| row.signs.as_mut());
         for signs in of_models.chain(self.role_signs.values_mut()).chain([&mut self.signs]) {
@@ -222,12 +220,8 @@ impl Rules {
     /// The signs that are said of the channels of a model: those of the model before those of its role, these before those of all.
     pub fn signs_of(&self, key: &str, role: Option<RowRole>) -> Signs {
         let mut signs = self.signs.clone();
-        let role = match role {
-            Some(RowRole::Identified) => Some("identified"),
-            Some(RowRole::Nominal | RowRole::Perturbed) => Some("physics"),
-            None => None,
-        };
-        let of_role = role.and_then(|role| self.role_signs.get(role));
+        let bundle = role.map(|role| if role == RowRole::Identified { "identified" } else { "physics" });
+        let of_role = bundle.and_then(|bundle| self.role_signs.get(bundle));
         let of_model = self.rows.get(key).and_then(|row| row.signs.as_ref());
         signs.extend(of_role.into_iter().chain(of_model).flatten().map(|(name, sign)| (name.clone(), *sign)));
         signs
@@ -369,12 +363,11 @@ impl PartialEq for NamePattern {
 
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> &'static [NamePattern] {
-    /// Compiled once: every record asks for them.
-    static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(compiled_patterns);
     &STANDARD
 }
 
-fn compiled_patterns() -> Vec<NamePattern> {
+/// Compiled once: every record asks for them.
+static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
     let offset = |words: &str, coordinate: &str| {
         format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
@@ -401,7 +394,7 @@ fn compiled_patterns() -> Vec<NamePattern> {
     ];
     // Each is tried by a test: none is left out here.
     texts.iter().filter_map(|text| NamePattern::new(text).ok()).collect()
-}
+});
 
 #[cfg(test)]
 mod tests {

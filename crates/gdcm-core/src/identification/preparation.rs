@@ -93,12 +93,11 @@ impl Preparation {
 
     /// Inputs, then outputs.
     pub(super) fn channels(&self) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
-        let of_role = |role, channels| {
-            let channels: &[ChannelPreparation] = channels;
-            let signal = move |index, name: &String| Signal { role, index, name: name.clone() };
-            channels.iter().enumerate().map(move |(index, channel)| (signal(index, &channel.name), channel))
+        let of_role = |role: ChannelSide| {
+            let channels = role.of(&self.inputs, &self.outputs).iter().enumerate();
+            channels.map(move |(index, channel)| (Signal { role, index, name: channel.name.clone() }, channel))
         };
-        of_role(ChannelSide::Input, &self.inputs).chain(of_role(ChannelSide::Output, &self.outputs))
+        of_role(ChannelSide::Input).chain(of_role(ChannelSide::Output))
     }
 
     /// How a channel is prepared.
@@ -112,10 +111,9 @@ impl Preparation {
     }
 
     fn checked(&self) -> Result<(), PreparationError> {
-        for (role, channels) in [(ChannelSide::Input, &self.inputs), (ChannelSide::Output, &self.outputs)] {
-            if channels.is_empty() {
-                return Err(PreparationError::NoChannels { role });
-            }
+        let is_missing = |role: &ChannelSide| role.of(&self.inputs, &self.outputs).is_empty();
+        if let Some(role) = [ChannelSide::Input, ChannelSide::Output].into_iter().find(is_missing) {
+            return Err(PreparationError::NoChannels { role });
         }
         for (signal, channel) in self.channels() {
             let hold_s = match channel.hold {
@@ -409,11 +407,9 @@ fn prepare_record(
 }
 
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
-    let counts = [
-        (ChannelSide::Input, record.inputs.ncols(), preparation.inputs.len()),
-        (ChannelSide::Output, record.outputs.ncols(), preparation.outputs.len()),
-    ];
-    for (role, found, named) in counts {
+    for role in [ChannelSide::Input, ChannelSide::Output] {
+        let found = role.of(&record.inputs, &record.outputs).ncols();
+        let named = role.of(&preparation.inputs, &preparation.outputs).len();
         if found != named {
             return Err(PreparationError::ChannelsDiffer { record: record.name.clone(), role, found, named });
         }

@@ -1,10 +1,11 @@
 //! Models found in files, the rules about them, and what both make.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-
 use super::*;
-use crate::dataset::{Dataset, DatasetDraft, Origin, ResponseDraft};
+use crate::dataset::{
+    BandsDraft, Channel, ConditionDraft, ConditionId, Dataset, DatasetDraft, FlightState, Provenance, ResponseArray,
+    Timing,
+};
+use nalgebra::DMatrix;
 
 /// One model, and what it is to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +40,7 @@ impl Default for Assembly {
 impl Assembly {
     /// What `rules` make of `models`.
     pub fn new(models: Vec<FoundModel>, rules: Rules) -> Self {
-        let rows = rows(&models, &rules);
+        let rows = proposed_rows(&models, &rules);
         let with_row = models.into_iter().zip(rows);
         let parts = with_row.map(|(found, row)| part_of(found, row, &rules)).collect();
         let mut assembly = Self { rules, parts, problems: Vec::new() };
@@ -101,7 +102,7 @@ impl Assembly {
         if !self.problems.is_empty() {
             return None;
         }
-        let mut draft = self.draft();
+        let mut draft = merged(&self.rules, &self.parts);
         for condition in &mut draft.conditions {
             let models = condition.physics.iter_mut().chain(&mut condition.identified);
             let of_models = models.filter_map(|model| model.source.as_mut()?.file.as_mut());
@@ -112,10 +113,6 @@ impl Assembly {
             }
         }
         draft.checked().ok().map(|(dataset, _)| dataset)
-    }
-
-    fn draft(&self) -> DatasetDraft {
-        merged(&self.rules, &self.parts)
     }
 
     /// The models that are taken.
@@ -132,15 +129,16 @@ impl Assembly {
             let said = self.rules.rows.get(&part.found.key());
             if part.row.role != Some(RowRole::Identified) && said.is_none_or(|said| said.perturbation.is_none()) {
                 let unread = part.row.unread.iter().cloned();
-                problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart { part })));
+                problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart(part))));
             }
             problems.extend(row_problems(part).into_iter().map(|kind| Problem::of(index, kind)));
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
         }
-        problems.extend(self.condition_problems());
+        let conditions = by_condition(&self.parts);
+        problems.extend(conditions.iter().flat_map(|(condition, parts)| problems_of_condition(*condition, parts)));
         if problems.is_empty()
-            && let Err(error) = self.draft().checked()
+            && let Err(error) = merged(&self.rules, &self.parts).checked()
         {
             problems.push(Problem::of_all(ProblemKind::Dataset(format!("{}: {}", error.place, error.fault))));
         }
@@ -158,244 +156,330 @@ impl Assembly {
         }
         problems
     }
-
-    fn condition_problems(&self) -> Vec<Problem> {
-        let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
-        for (index, part) in self.taken() {
-            if let Some(condition) = part.row.condition {
-                conditions.entry(condition).or_default().push((index, part));
-            }
-        }
-        conditions.iter().flat_map(|(condition, parts)| problems_of_condition(*condition, parts)).collect()
-    }
 }
 
 fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     let said = rules.rows.get(&found.key());
-    let labels = |labels: &[ChannelLabel], names: Option<&Vec<String>>| -> Vec<ChannelLabel> {
+    // A measured response may be one of several files that belong together.
+    let partial = found.draft.response.is_some();
+    let signs = rules.signs_of(&found.key(), row.role);
+    let matched = |side, labels: &[ChannelLabel], names: Option<&Vec<String>>, channels: &[ChannelRule]| {
         let named = |(index, label): (usize, &ChannelLabel)| ChannelLabel {
             name: names.and_then(|names| names.get(index)).cloned().or_else(|| label.name.clone()),
             unit: label.unit.clone(),
         };
-        labels.iter().enumerate().map(named).collect()
-    };
-    let inputs = labels(&found.inputs, said.and_then(|said| said.inputs.as_ref()));
-    let outputs = labels(&found.outputs, said.and_then(|said| said.outputs.as_ref()));
-    // A measured response may be one of several files that belong together.
-    let partial = found.draft.response.is_some();
-    let signs = rules.signs_of(&found.key(), row.role);
-    let matched = |side, labels: &[ChannelLabel], channels: &[ChannelRule]| {
-        ChannelMatch::of(side, labels, channels, (&rules.units, &signs), partial)
-    };
-    let mut channels = [matched("input", &inputs, &rules.inputs), matched("output", &outputs, &rules.outputs)];
-    let names = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
-    let counts = [("input", inputs.len()), ("output", outputs.len())];
-    for ((of_side, names), (side, found)) in channels.iter_mut().zip(names).zip(counts) {
-        if let Some(names) = names.filter(|names| names.len() != found) {
-            of_side.problems.push(ProblemKind::Names { side, said: names.len(), found });
+        let labels: Vec<ChannelLabel> = labels.iter().enumerate().map(named).collect();
+        let mut matched = ChannelMatch::of(side, &labels, channels, (&rules.units, &signs), partial);
+        if let Some(names) = names.filter(|names| names.len() != labels.len()) {
+            matched.problems.push(ProblemKind::Names { side, said: names.len(), found: labels.len() });
         }
-    }
-    let [inputs, outputs] = channels;
+        matched
+    };
+    let [of_inputs, of_outputs] = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
+    let inputs = matched(ChannelSide::Input, &found.inputs, of_inputs, &rules.inputs);
+    let outputs = matched(ChannelSide::Output, &found.outputs, of_outputs, &rules.outputs);
     let sample_time_s = said.and_then(|said| said.sample_time_s).or(rules.sample_time_s);
     let sample_time_s = sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
     Part { found, row, inputs, outputs, sample_time_s }
 }
 
-/// What names, contents and rules say of each model.
-fn rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
-    let mut rows: Vec<Row> = models.iter().map(|model| proposed_row(model, models, rules)).collect();
-    number_conditions(models, &mut rows);
-    propose_nominal(&mut rows);
-    for (model, row) in models.iter().zip(&mut rows) {
-        if let Some(said) = rules.rows.get(&model.key()) {
-            said.apply(row);
+// The unchecked dataset of models that are said to be what, each in the channels and units of the dataset.
+
+/// The draft that the parts make; those that are left out, or of which condition or role are not said, are not in it.
+pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
+    let channel = |rule: &ChannelRule| Channel::new(rule.name.clone(), rule.unit.clone());
+    DatasetDraft {
+        name: rules.name.clone(),
+        description: rules.description.clone(),
+        inputs: rules.inputs.iter().map(channel).collect(),
+        outputs: rules.outputs.iter().map(channel).collect(),
+        on_axis: rules.on_axis.clone(),
+        band: rules.band,
+        conditions: by_condition(parts).into_iter().map(|(id, parts)| condition_of(id, &parts)).collect(),
+    }
+}
+
+/// The models that are taken, each with its place among all, by their conditions.
+fn by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<(usize, &Part)>> {
+    let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
+    for (index, part) in parts.iter().enumerate().filter(|(_, part)| !part.row.left_out) {
+        if let Some(condition) = part.row.condition {
+            conditions.entry(condition).or_default().push((index, part));
         }
     }
-    rows
+    conditions
 }
 
-fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
-    let facts = &model.facts;
-    let mut row = Row {
-        condition: facts.condition,
-        airspeed_kt: facts.airspeed_kt,
-        altitude_ft: facts.altitude_ft,
-        mass_kg: facts.mass_kg,
-        ..Row::default()
+fn condition_of(id: i64, parts: &[(usize, &Part)]) -> ConditionDraft {
+    let parts: Vec<&Part> = parts.iter().map(|(_, part)| *part).collect();
+    let parts = parts.as_slice();
+    fn said<T: Clone>(parts: &[&Part], of: impl Fn(&Row) -> &Option<T>) -> Option<T> {
+        parts.iter().find_map(|part| of(&part.row).clone())
+    }
+    let mut state = FlightState {
+        id: ConditionId(id),
+        name: String::new(),
+        airspeed_kt: said(parts, |row| &row.airspeed_kt).unwrap_or(f64::NAN),
+        altitude: said(parts, |row| &row.altitude),
+        altitude_ft: said(parts, |row| &row.altitude_ft),
+        weight: said(parts, |row| &row.weight),
+        mass_kg: said(parts, |row| &row.mass_kg),
     };
-    let path = without_extension(model.file());
-    let name = if model.variable().is_empty() { path.clone() } else { format!("{path}#{}", model.variable()) };
-    for pattern in &rules.patterns {
-        pattern.read(&name, &mut row);
-    }
-    // What else a hyphen and a number may be ("rev-3") is not asked about.
-    if !row.perturbation.is_empty() {
-        row.unread = unread_offsets(name.rsplit('/').next().unwrap_or(&name), &rules.patterns);
-    }
-    if let Origin::Identified { method, .. } = &model.draft.origin {
-        row.role = row.role.or(Some(RowRole::Identified));
-        row.method = row.method.or_else(|| method.clone());
-    }
-    if row.role.is_none() && model.response().is_some() {
-        row.role = Some(RowRole::Identified);
-    }
-    if row.role.is_none() && !row.perturbation.is_empty() {
-        row.role = Some(RowRole::Perturbed);
-    }
-    if row.name.is_empty() {
-        row.name = usual_name(model, all, rules, &path);
-    }
-    row
-}
-
-/// The file's name without its folder; the variable beside it where the file holds several models; "measured" of a response that
-/// is one part of a model.
-fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str) -> String {
-    let is_part = model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
-    if model.response().is_some() && is_part {
-        return "measured".to_owned();
-    }
-    let stem = path.rsplit('/').next().unwrap_or(path);
-    let several = all.iter().filter(|other| other.file() == model.file()).count() > 1;
-    match (several, model.variable()) {
-        (true, variable) if !variable.is_empty() => variable.to_owned(),
-        _ if stem.is_empty() => model.draft.name.clone(),
-        _ => stem.to_owned(),
+    state.name = condition_name(&state);
+    let of_role = |wanted: &[RowRole]| -> Vec<&Part> {
+        let is_wanted = |part: &&&Part| part.row.role.is_some_and(|role| wanted.contains(&role));
+        parts.iter().filter(is_wanted).copied().collect()
+    };
+    let mut physics = of_role(&[RowRole::Nominal, RowRole::Perturbed]);
+    // The nominal model first, as a dataset is read.
+    physics.sort_by_key(|part| part.row.role);
+    let coordinates: BTreeSet<&String> = physics.iter().flat_map(|part| part.row.perturbation.keys()).collect();
+    ConditionDraft {
+        flight_state: state,
+        physics: physics.iter().map(|part| physics_model(part, &coordinates)).collect(),
+        identified: identified_models(&of_role(&[RowRole::Identified])),
+        records: records_of(parts),
     }
 }
 
-fn without_extension(file: &str) -> String {
-    let file = file.replace('\\', "/");
-    let file = file.strip_suffix(".gz").unwrap_or(&file);
-    Path::new(file).with_extension("").to_string_lossy().into_owned()
+/// The flight records that the files of the models name, once each, as the file says it that says which pieces are used; of different
+/// ones of one name the later gets a number.
+fn records_of(parts: &[&Part]) -> Vec<ConditionRecord> {
+    let mut records: Vec<ConditionRecord> = Vec::new();
+    let mut known: Vec<(&String, &String, &Option<String>)> = Vec::new();
+    for record in parts.iter().flat_map(|part| &part.found.facts.records) {
+        let key = (&record.name, &record.file, &record.variable);
+        if let Some(place) = known.iter().position(|other| *other == key) {
+            if records[place].used_s.is_empty() {
+                records[place] = ConditionRecord { name: records[place].name.clone(), ..record.clone() };
+            }
+            continue;
+        }
+        known.push(key);
+        let numbers = std::iter::successors(Some(2_usize), |number| Some(number + 1));
+        let names = numbers.map(|number| format!("{} ({number})", record.name));
+        let free = |name: &String| records.iter().all(|other| other.name != *name);
+        let name = std::iter::once(record.name.clone()).chain(names).find(free);
+        records.push(ConditionRecord { name: name.unwrap_or_default(), ..record.clone() });
+    }
+    records
 }
 
-/// Where no name says a number, each folder is a condition, in the order of their names.
-fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
-    if rows.iter().any(|row| row.condition.is_some()) {
+/// "45 kt, high altitude, low weight".
+fn condition_name(state: &FlightState) -> String {
+    let class = |class: &Option<String>, of: &str| class.as_ref().map(|class| format!("{class} {of}"));
+    let figure = |value: Option<f64>, unit: &str| value.map(|value| format!("{} {unit}", number(value)));
+    let altitude = class(&state.altitude, "altitude").or_else(|| figure(state.altitude_ft, "ft"));
+    let weight = class(&state.weight, "weight").or_else(|| figure(state.mass_kg, "kg"));
+    let parts = [figure(Some(state.airspeed_kt), "kt"), altitude, weight];
+    parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// Coordinates that others of the bundle name are at rest in this model.
+fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
+    let offset = |coordinate: &&String| {
+        let offset = part.row.perturbation.get(*coordinate).copied().unwrap_or(0.0);
+        ((*coordinate).clone(), offset)
+    };
+    let perturbation =
+        Some(coordinates.iter().map(offset).collect()).filter(|offsets: &BTreeMap<_, _>| !offsets.is_empty());
+    let origin = match part.row.role {
+        Some(RowRole::Nominal) => Origin::Nominal { perturbation },
+        _ => Origin::Perturbed { perturbation },
+    };
+    ModelDraft { origin, ..model_of(part) }
+}
+
+/// Measured responses of one name are one model.
+fn identified_models(parts: &[&Part]) -> Vec<ModelDraft> {
+    let mut models: Vec<ModelDraft> = Vec::new();
+    for part in parts {
+        let model = ModelDraft { origin: identified_origin(part), ..model_of(part) };
+        let same = models.iter_mut().find(|other| other.name == model.name && other.response.is_some());
+        match (same, &model.response) {
+            (Some(earlier), Some(response)) => join(earlier, response, part),
+            _ => models.push(model),
+        }
+    }
+    models
+}
+
+fn identified_origin(part: &Part) -> Origin {
+    let order = match &part.found.draft.origin {
+        Origin::Identified { order, .. } => *order,
+        Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
+    };
+    Origin::Identified { method: part.row.method.clone(), order: order.filter(|_| part.found.response().is_some()) }
+}
+
+/// Puts the responses that `response` has, and the earlier model has not, into it.
+fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
+    let Some(into) = &mut earlier.response else { return };
+    let count = into.omega.len();
+    for place in 0..into.re.shape[0] * into.re.shape[1] {
+        let range = place * count..(place + 1) * count;
+        let is_given = |of: &ResponseDraft| range.clone().any(|at| of.re.values[at] != 0.0 || of.im.values[at] != 0.0);
+        if !is_given(response) || is_given(into) {
+            continue;
+        }
+        into.re.values[range.clone()].copy_from_slice(&response.re.values[range.clone()]);
+        into.im.values[range.clone()].copy_from_slice(&response.im.values[range.clone()]);
+        join_coherence(into, response, range);
+    }
+    if let Some(source) = &mut earlier.source {
+        let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
+        source.note = Some(format!("{note}with {}", part.found.key()));
+    }
+}
+
+/// A part without coherence is trusted as it is where others have one.
+fn join_coherence(into: &mut ResponseDraft, response: &ResponseDraft, range: std::ops::Range<usize>) {
+    let shape = into.re.shape;
+    if into.coherence.is_none() && response.coherence.is_none() {
         return;
     }
-    let folder = |model: &FoundModel| match without_extension(model.file()).rsplit_once('/') {
-        Some((folder, _)) => folder.to_owned(),
-        None => String::new(),
+    let full = || ResponseArray { shape, values: vec![1.0; shape.iter().product()] };
+    let coherence = into.coherence.get_or_insert_with(full);
+    match &response.coherence {
+        Some(of) => coherence.values[range.clone()].copy_from_slice(&of.values[range]),
+        None => coherence.values[range].fill(1.0),
+    }
+}
+
+/// The model in the dataset's channels and units, and what was done to it.
+fn model_of(part: &Part) -> ModelDraft {
+    let mut model = converted(&part.found.draft, &part.inputs.uses, &part.outputs.uses);
+    model.name.clone_from(&part.row.name);
+    if let Some(sample_time_s) = part.sample_time_s.filter(|step| *step > 0.0) {
+        model.timing.sample_time_s = Some(sample_time_s);
+    }
+    let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
+    let conversions = uses.filter_map(|used| used.words.clone());
+    let sampled = part.sample_time_s.map(|step| format!("sample time {} s, as is said", number(step)));
+    let notes = part.inputs.notes.iter().chain(&part.outputs.notes).cloned().chain(sampled);
+    let said = model.source.as_ref().and_then(|source| source.note.clone());
+    let words: Vec<String> = said.into_iter().chain(notes).chain(conversions).collect();
+    if !words.is_empty() {
+        let source = model.source.get_or_insert_with(Provenance::default);
+        source.note = Some(words.join("; "));
+    }
+    model
+}
+
+/// The model with the dataset's channels in the dataset's order and units, `H'_oi = f_o H_oi / f_i`; the same numbers, bit for bit,
+/// where nothing is converted. Channels that are missing respond to nothing.
+pub(super) fn converted(
+    model: &ModelDraft,
+    inputs: &[Option<ChannelUse>],
+    outputs: &[Option<ChannelUse>],
+) -> ModelDraft {
+    let [a, b, c, d] = &model.matrices;
+    let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
+    let response = model.response.as_ref().map(|response| ResponseDraft {
+        omega: response.omega.clone(),
+        re: table(&response.re, true),
+        im: table(&response.im, true),
+        coherence: response.coherence.as_ref().map(|array| table(array, false)),
+        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false)),
+        estimate: response.estimate,
+    });
+    let timing = Timing {
+        sample_time_s: model.timing.sample_time_s,
+        input_delays_s: model.timing.input_delays_s.as_ref().map(|delays| chosen(delays, inputs)),
+        output_delays_s: model.timing.output_delays_s.as_ref().map(|delays| chosen(delays, outputs)),
     };
-    let folders: BTreeSet<String> = models.iter().map(folder).collect();
-    for (model, row) in models.iter().zip(rows) {
-        row.condition = folders.iter().position(|of| *of == folder(model)).map(|index| index as i64 + 1);
-    }
+    let b = b.as_ref().map(|b| columns(b, inputs));
+    let c = c.as_ref().map(|c| rows(c, outputs));
+    let d = d.as_ref().map(|d| rows(&columns(d, inputs), outputs));
+    // A factor moves a curve in decibels and leaves the width of its band.
+    let bands = model.bands.as_ref().map(|bands| BandsDraft {
+        omega: bands.omega.clone(),
+        sd_db: table(&bands.sd_db, false),
+        sd_deg: table(&bands.sd_deg, false),
+    });
+    ModelDraft { matrices: [a.clone(), b, c, d], response, timing, bands, ..model.clone() }
 }
 
-/// The only physics model of a condition at no perturbed trim is nominal.
-fn propose_nominal(rows: &mut [Row]) {
-    let conditions: BTreeSet<i64> = rows.iter().filter_map(|row| row.condition).collect();
-    for condition in conditions {
-        let of = |row: &&mut Row| row.condition == Some(condition);
-        let has_nominal = rows.iter_mut().filter(of).any(|row| row.role == Some(RowRole::Nominal));
-        let mut open: Vec<&mut Row> = rows.iter_mut().filter(of).filter(|row| row.role.is_none()).collect();
-        if let ([row], false) = (open.as_mut_slice(), has_nominal) {
-            row.role = Some(RowRole::Nominal);
+fn chosen(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
+    let delay =
+        |used: &Option<ChannelUse>| used.as_ref().and_then(|used| delays.get(used.index)).copied().unwrap_or(0.0);
+    uses.iter().map(delay).collect()
+}
+
+/// The columns of inputs, each over its factor.
+fn columns(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
+    DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| match &uses[column] {
+        Some(used) if used.index < matrix.ncols() => scaled(matrix[(row, used.index)], 1.0, used.factor),
+        _ => 0.0,
+    })
+}
+
+/// The rows of outputs, each times its factor.
+fn rows(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
+    DMatrix::from_fn(uses.len(), matrix.ncols(), |row, column| match &uses[row] {
+        Some(used) if used.index < matrix.nrows() => scaled(matrix[(used.index, column)], used.factor, 1.0),
+        _ => 0.0,
+    })
+}
+
+fn scaled(value: f64, times: f64, over: f64) -> f64 {
+    if times == over { value } else { value * times / over }
+}
+
+/// The table of the dataset's channels, converted or as it is; zero where a channel is missing.
+fn picked(
+    array: &ResponseArray,
+    (inputs, outputs): (&[Option<ChannelUse>], &[Option<ChannelUse>]),
+    convert: bool,
+) -> ResponseArray {
+    let [p, m, count] = array.shape;
+    let mut values = Vec::with_capacity(outputs.len() * inputs.len() * count);
+    for output in outputs {
+        for input in inputs {
+            let of = output.as_ref().zip(input.as_ref()).filter(|(output, input)| output.index < p && input.index < m);
+            let Some((output, input)) = of else {
+                values.extend(std::iter::repeat_n(0.0, count));
+                continue;
+            };
+            let start = (output.index * m + input.index) * count;
+            let (times, over) = if convert { (output.factor, input.factor) } else { (1.0, 1.0) };
+            values.extend(array.values[start..start + count].iter().map(|value| scaled(*value, times, over)));
         }
     }
+    ResponseArray { shape: [outputs.len(), inputs.len(), count], values }
 }
 
-fn row_problems(part: &Part) -> Vec<ProblemKind> {
-    let mut problems = Vec::new();
-    if part.row.condition.is_none() {
-        problems.push(ProblemKind::NoCondition);
-    }
-    match part.row.role {
-        None => problems.push(ProblemKind::NoRole),
-        Some(role @ (RowRole::Nominal | RowRole::Perturbed)) if part.found.response().is_some() => {
-            problems.push(ProblemKind::MeasuredPhysics(role));
-        }
-        Some(_) => {}
-    }
-    problems.extend(part.sample_time_s.is_none().then(|| missing_sample_time(part)).flatten());
-    problems
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, or as
-/// little outside as an unstable mode of a helicopter is, and half of them or more (and at least two) near 1. In continuous time the
-/// latter grow within a second.
-fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
-    /// Real part of a pole near 1, and the magnitude of one that is outside by little.
-    const NEAR: f64 = 0.5;
-    const OUTSIDE: f64 = 1.05;
-    let a =
-        part.found.draft.matrices[0].as_ref().filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
-    // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
-    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
-        return None;
+    fn used(index: usize, factor: f64) -> Option<ChannelUse> {
+        Some(ChannelUse { index, factor, words: None })
     }
-    let poles = a.complex_eigenvalues();
-    let near = poles.iter().filter(|pole| pole.re > NEAR).count();
-    let is_discrete = poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
-    is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
-}
 
-fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
-    let first = parts[0].0;
-    let mut kinds = contradictions(condition, parts);
-    if parts.iter().all(|(_, part)| part.row.airspeed_kt.is_none()) {
-        kinds.push(ProblemKind::NoAirspeed);
+    #[test]
+    fn a_response_is_multiplied_by_the_output_s_factor_over_the_input_s() {
+        let matrix = |rows, columns, values: &[f64]| Some(DMatrix::from_row_slice(rows, columns, values));
+        let model = ModelDraft {
+            name: "m".into(),
+            origin: Origin::Perturbed { perturbation: None },
+            matrices: [
+                matrix(1, 1, &[-1.0]),
+                matrix(1, 2, &[1.0, 2.0]),
+                matrix(2, 1, &[3.0, 5.0]),
+                matrix(2, 2, &[0.0, 1.0, 2.0, 3.0]),
+            ],
+            timing: Timing { input_delays_s: Some(vec![0.1, 0.2]), ..Timing::default() },
+            response: None,
+            source: None,
+            states: Vec::new(),
+            bands: None,
+        };
+        let turned = converted(&model, &[used(1, 2.0), used(0, 1.0)], &[used(1, 10.0)]);
+        let [_, b, c, d] = turned.matrices.map(Option::unwrap);
+        assert_eq!((b.as_slice(), c.as_slice(), d.as_slice()), (&[1.0, 1.0][..], &[50.0][..], &[15.0, 20.0][..]));
+        assert_eq!(turned.timing.input_delays_s, Some(vec![0.2, 0.1]));
+        let same = converted(&model, &[used(0, 1.0), used(1, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
+        assert_eq!(same, model);
     }
-    let count = |role: RowRole| parts.iter().filter(|(_, part)| part.row.role == Some(role)).count();
-    if count(RowRole::Nominal) != 1 {
-        kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
-    }
-    if count(RowRole::Identified) == 0 {
-        kinds.push(ProblemKind::NoIdentified { condition });
-    }
-    let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
-    problems.extend(name_problems(condition, parts));
-    problems
-}
-
-/// A field of a flight condition: its name, and what a row says of it.
-type Field<'f> = (&'static str, &'f dyn Fn(&Row) -> Option<String>);
-
-fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> {
-    let number = |value: Option<f64>| value.map(crate::units::number);
-    let fields: [Field<'_>; 5] = [
-        ("airspeed [kt]", &|row| number(row.airspeed_kt)),
-        ("altitude [ft]", &|row| number(row.altitude_ft)),
-        ("mass [kg]", &|row| number(row.mass_kg)),
-        ("altitude", &|row| row.altitude.clone()),
-        ("weight", &|row| row.weight.clone()),
-    ];
-    let contradiction = |(field, of): Field<'_>| {
-        let mut values = parts.iter().filter_map(|(_, part)| of(&part.row));
-        let first = values.next()?;
-        let second = values.find(|value| *value != first)?;
-        Some(ProblemKind::Contradiction { condition, field, first, second })
-    };
-    fields.into_iter().filter_map(contradiction).collect()
-}
-
-/// Names that stand twice in a bundle; measured responses of one name are parts of one model.
-fn name_problems(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
-    let mut seen: BTreeMap<(bool, &str), &Part> = BTreeMap::new();
-    let mut problems = Vec::new();
-    for (index, part) in parts {
-        let is_identified = part.row.role == Some(RowRole::Identified);
-        let Some(earlier) = seen.insert((is_identified, &part.row.name), part) else { continue };
-        match (earlier.found.response(), part.found.response()) {
-            (Some(a), Some(b)) if a.omega == b.omega => {}
-            (Some(a), Some(b)) => {
-                let grid = |of: &ResponseDraft| {
-                    let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
-                    (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])
-                };
-                let (first, second) = (earlier.found.key(), part.found.key());
-                let kind = ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) };
-                problems.push(Problem::of(*index, kind));
-            }
-            _ => {
-                let bundle = if is_identified { "identified" } else { "physics" };
-                let name = part.row.name.clone();
-                problems.push(Problem::of(*index, ProblemKind::Name { condition, bundle, name }));
-            }
-        }
-    }
-    problems
 }

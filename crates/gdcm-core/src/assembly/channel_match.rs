@@ -1,10 +1,6 @@
 //! Which channel of a file is which of the dataset, and what its numbers are multiplied by.
 
-use std::collections::BTreeMap;
-
-use super::{
-    ChannelLabel, ChannelRule, ProblemKind, SignedName, UnitRule, conversion_factor, same_channel, sign_between,
-};
+use super::*;
 
 /// A channel of the file that becomes one of the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,10 +25,10 @@ pub struct ChannelMatch {
 }
 
 impl ChannelMatch {
-    /// Matches the channels of one side; `side` is "input" or "output", `said` the signs that are said of channels, `partial` lets
+    /// Matches the channels of one side; `said` are the signs that are said of channels, `partial` lets
     /// channels be missing.
     pub fn of(
-        side: &'static str,
+        side: ChannelSide,
         labels: &[ChannelLabel],
         rules: &[ChannelRule],
         (units, said): (&[UnitRule], &BTreeMap<String, f64>),
@@ -61,13 +57,7 @@ impl ChannelMatch {
     }
 
     /// The channel of the file that is `rule`'s: of its very name, or else one that the field, or the rule, calls the same.
-    fn find(
-        &mut self,
-        side: &'static str,
-        labels: &[ChannelLabel],
-        rule: &ChannelRule,
-        partial: bool,
-    ) -> Option<usize> {
+    fn find(&mut self, side: ChannelSide, labels: &[ChannelLabel], rule: &ChannelRule, partial: bool) -> Option<usize> {
         let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let indices = labels.iter().enumerate();
             indices.filter(|(_, label)| label.name.as_deref().is_some_and(is_it)).map(|(index, _)| index).collect()
@@ -154,6 +144,166 @@ impl ChannelMatch {
     }
 }
 
+// Names of channels, of the time and of the sample time, however files write them.
+
+/// What each channel is called, all folded (see [`folded_name`]), the first name standing for the others; those such as "elevyoke1" are a
+/// flight simulator's. A name stands in one row only.
+const ALIASES: [&str; 16] = [
+    "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
+     pitchstick elevator loncyc longstick elevyoke1",
+    "lat lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick ailrnyoke1",
+    "ped pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal ruddryoke1",
+    "col coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m",
+    "p rollrate pb pbody omegax",
+    "q pitchrate qb qbody omegay",
+    "r yawrate rb rbody omegaz",
+    "nx ax axb longitudinalacceleration longaccel accx gloadaxial",
+    "ny ay ayb lateralacceleration lataccel accy gloadside",
+    "nz az azb verticalacceleration vertaccel normalacceleration loadfactor accz gloadnorml",
+    "u ub ubody forwardspeed",
+    "v vb vbody sidewardspeed sidespeed",
+    "w wb wbody heave verticalspeed heavevelocity",
+    "phi roll rollangle rollattitude bank bankangle",
+    "theta pitch pitchangle pitchattitude",
+    "psi yaw heading yawangle",
+];
+
+/// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa", "Sample_Time" is "sampletime".
+pub fn folded_name(name: &str) -> String {
+    let mut words = String::with_capacity(name.len());
+    for letter in name.chars().flat_map(char::to_lowercase) {
+        match letter {
+            'δ' | 'Δ' => words.push_str("delta"),
+            'θ' | 'ϑ' => words.push_str("theta"),
+            'φ' | 'ϕ' => words.push_str("phi"),
+            'ψ' => words.push_str("psi"),
+            'ω' => words.push_str("omega"),
+            letter if letter.is_alphanumeric() => words.push(letter),
+            _ => {}
+        }
+    }
+    words
+}
+
+/// The name that stands for all that call the same channel.
+fn canonical(name: &str) -> String {
+    let name = folded_name(name);
+    let mut rows = ALIASES.iter().map(|row| row.split(' '));
+    let first = rows.find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
+    first.map_or_else(|| name.clone(), str::to_owned)
+}
+
+/// Whether two names call the same channel: the same but for case and marks, or names that the field uses for one another.
+pub fn same_channel(a: &str, b: &str) -> bool {
+    a == b || canonical(a) == canonical(b)
+}
+
+/// Names of the acceleration along the z axis by the axis, which points down in some programs and up in others; those of the load
+/// factor, which is positive up.
+const ALONG_Z: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
+const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
+
+/// A name and the marks of its sign: `-az`, `az (down)`, `az[+down]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SignedName {
+    /// The name without the marks.
+    pub name: String,
+    /// Whether a minus stands before it.
+    pub minus: bool,
+    /// 1 where it is said to be positive up, right or forward, -1 where it is the other way round.
+    pub direction: Option<f64>,
+}
+
+impl SignedName {
+    /// Reads the marks of a name.
+    pub fn of(text: &str) -> Self {
+        let text = text.trim();
+        let begins_name =
+            |rest: &str| rest.trim_start().starts_with(|letter: char| letter.is_alphabetic() || letter == '#');
+        let (minus, rest) = match text.strip_prefix(['-', '\u{2212}']).filter(|rest| begins_name(rest)) {
+            Some(rest) => (true, rest.trim_start()),
+            None => (false, text.strip_prefix('+').filter(|rest| begins_name(rest)).unwrap_or(text)),
+        };
+        let marked = [('(', ')'), ('[', ']'), ('{', '}')].into_iter().find_map(|(open, close)| {
+            let (name, mark) = rest.strip_suffix(close)?.rsplit_once(open)?;
+            Some((name.trim(), direction_of(mark)?))
+        });
+        let (name, direction) = match marked.filter(|(name, _)| !name.is_empty()) {
+            Some((name, direction)) => (name, Some(direction)),
+            None => (rest, None),
+        };
+        Self { name: name.to_owned(), minus, direction }
+    }
+
+    /// The direction that is said, or that the name stands for.
+    fn known_direction(&self) -> Option<f64> {
+        self.direction.or(LOAD_FACTOR.contains(&folded_name(&self.name).as_str()).then_some(1.0))
+    }
+}
+
+/// What "down", "+down", "positive down", "-up" say: 1 where it is positive up, right or forward, -1 where it is the other way round.
+pub fn direction_of(mark: &str) -> Option<f64> {
+    let mark = mark.trim().to_lowercase();
+    let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
+        Some(word) => (-1.0, word),
+        None => (1.0, mark.trim_start_matches('+')),
+    };
+    let word = word.trim().trim_start_matches("positive").trim_start_matches("pos").trim_start_matches(['.', ' ']);
+    let word = word.trim_end_matches("positive").trim_end_matches('+').trim();
+    match word {
+        "up" | "right" | "forward" | "fwd" => Some(sign),
+        "down" | "dn" | "left" | "aft" | "rearward" => Some(-sign),
+        _ => None,
+    }
+}
+
+/// What the numbers of a channel that a file calls `label` are multiplied by to be those of a channel called `channel`: 1 or -1; none
+/// where the names leave it open.
+///
+/// A minus is the sign. Where a direction is said, that of the other has to be known too: a load factor is positive up. `az` and `NZ`
+/// are the same but for a sign that neither says.
+pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
+    if label.trim() == channel.trim() {
+        return Some(1.0);
+    }
+    let (of_label, of_channel) = (SignedName::of(label), SignedName::of(channel));
+    let minus = if of_label.minus == of_channel.minus { 1.0 } else { -1.0 };
+    match (of_label.direction, of_channel.direction) {
+        (None, None) => {
+            let family = |name: &SignedName| {
+                let name = folded_name(&name.name);
+                (ALONG_Z.contains(&name.as_str()), LOAD_FACTOR.contains(&name.as_str()))
+            };
+            let is_open =
+                matches!((family(&of_label), family(&of_channel)), ((true, _), (_, true)) | ((_, true), (true, _)));
+            (!is_open || of_label.minus || of_channel.minus).then_some(minus)
+        }
+        _ => Some(minus * of_label.known_direction()? * of_channel.known_direction()?),
+    }
+}
+
+/// Names of the time between two samples \[s\], as they are usually written.
+pub const SAMPLE_TIME_NAMES: [&str; 7] =
+    ["Ts", "dt", "tsam", "sample_time_s", "sample_time", "sampling_time", "Tsample"];
+
+/// How surely a name is that of the time of samples, 0 the surest; none where it is not. A unit of time at its end says nothing more:
+/// `time_s`, `t [ms]`.
+pub fn time_name_rank(name: &str) -> Option<u8> {
+    let words: Vec<String> =
+        name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
+    let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let is_time = |unit: PhysicalUnit| unit.dimension == Dimension::Time;
+    if words.len() > 1 && words.last().is_some_and(|word| PhysicalUnit::of(word).is_some_and(is_time)) {
+        words.pop();
+    }
+    match words.concat().as_str() {
+        "time" | "t" | "times" => Some(0),
+        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec" | "zeit" | "temps"
+        | "tempo" => Some(1),
+        _ => words.iter().any(|word| matches!(*word, "time" | "timestamp")).then_some(2),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,7 +324,7 @@ mod tests {
     fn channels_are_found_by_name_in_whatever_order_and_converted() {
         let rules = [rule("P", "deg/s"), rule("NZ", "m/s^2")];
         let labels = [label("nz", "g"), label("roll rate", "rad/s"), label("q", "rad/s")];
-        let found = ChannelMatch::of("output", &labels, &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &none()), false);
         assert!(found.problems.is_empty(), "{:?}", found.problems);
         let uses: Vec<(usize, f64)> = found.uses.iter().flatten().map(|used| (used.index, used.factor)).collect();
         assert_eq!(uses, [(1, 180.0 / std::f64::consts::PI), (0, 9.806_65)]);
@@ -183,13 +333,13 @@ mod tests {
     #[test]
     fn a_unit_that_is_not_said_is_asked_for_and_never_guessed() {
         let rules = [rule("LON", "%")];
-        let found = ChannelMatch::of("input", &[label("lon", "")], &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &rules, (&[], &none()), false);
         assert_eq!(found.problems, [ProblemKind::UnitOfFile { channel: "LON".into() }]);
         let said = [ChannelRule { unit_in_files: Some("in".into()), ..rule("LON", "%") }];
-        let found = ChannelMatch::of("input", &[label("lon", "")], &said, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[], &none()), false);
         assert!(matches!(&found.problems[..], [ProblemKind::Conversion { .. }]));
         let factor = UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.5 };
-        let found = ChannelMatch::of("input", &[label("lon", "")], &said, (&[factor], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[factor], &none()), false);
         assert_eq!(found.uses[0].as_ref().map(|used| used.factor), Some(8.5));
     }
 
@@ -197,20 +347,20 @@ mod tests {
     fn channels_without_names_are_taken_in_order_only_if_there_are_as_many() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let unnamed = |count| vec![ChannelLabel { name: None, unit: Some("%".into()) }; count];
-        let found = ChannelMatch::of("input", &unnamed(2), &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(2), &rules, (&[], &none()), false);
         assert!(found.problems.is_empty() && found.notes.len() == 1);
-        let found = ChannelMatch::of("input", &unnamed(3), &rules, (&[], &none()), false);
-        assert_eq!(found.problems, [ProblemKind::Unnamed { side: "input", expected: 2, found: 3 }]);
+        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(3), &rules, (&[], &none()), false);
+        assert_eq!(found.problems, [ProblemKind::Unnamed { side: ChannelSide::Input, expected: 2, found: 3 }]);
     }
 
     #[test]
     fn two_channels_that_can_be_the_same_are_asked_about_unless_one_has_the_very_name() {
         let rules = [rule("P", "deg/s")];
         let both = [label("p", "deg/s"), label("roll rate", "deg/s")];
-        let found = ChannelMatch::of("output", &both, &rules, (&[], &none()), false);
+        let found = ChannelMatch::of(ChannelSide::Output, &both, &rules, (&[], &none()), false);
         assert!(matches!(&found.problems[..], [ProblemKind::AmbiguousChannel { .. }]));
         let exact = [label("P", "deg/s"), label("roll rate", "deg/s")];
-        assert!(ChannelMatch::of("output", &exact, &rules, (&[], &none()), false).problems.is_empty());
+        assert!(ChannelMatch::of(ChannelSide::Output, &exact, &rules, (&[], &none()), false).problems.is_empty());
     }
 
     #[test]
@@ -219,7 +369,7 @@ mod tests {
         let factors = |name: &str, said: &[(&str, f64)]| {
             let labels = [label(name, "m/s2"), label("yaw", "deg/s")];
             let said = said.iter().map(|(name, sign)| ((*name).to_owned(), *sign)).collect();
-            let found = ChannelMatch::of("output", &labels, &rules, (&[], &said), false);
+            let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &said), false);
             (found.uses.iter().flatten().map(|used| used.factor).collect::<Vec<_>>(), found.problems)
         };
         let asked = ProblemKind::Sign { channel: "NZ".into(), found: "az".into() };
@@ -228,5 +378,56 @@ mod tests {
         assert_eq!(factors("-az", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("nz (down)", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("NZ", &[]), (vec![1.0, -1.0], vec![]));
+    }
+
+    #[test]
+    fn the_time_is_known_by_its_name_with_or_without_marks_and_unit() {
+        let ranks = [("t [ms]", 0), ("Time_s", 0), ("time_stamps", 1), ("t_out", 1), ("real,_time", 2)];
+        for (name, rank) in ranks {
+            assert_eq!(time_name_rank(name), Some(rank), "{name}");
+        }
+        assert!(["theta", "Ts", "tail rotor"].iter().all(|name| time_name_rank(name).is_none()));
+    }
+
+    #[test]
+    fn the_names_of_the_field_are_one_another() {
+        for (a, b) in
+            [("LAT", "δ_a"), ("lat", "Xa"), ("P", "roll rate"), ("q", "Pitch_Rate"), ("PED", "pedals"), ("NZ", "az")]
+        {
+            assert!(same_channel(a, b), "{a} {b}");
+        }
+        for (a, b) in [("LON", "LAT"), ("P", "PED"), ("roll", "roll rate"), ("P", "Q")] {
+            assert!(!same_channel(a, b), "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_mark_in_a_name_is_the_sign_and_is_never_dropped() {
+        for (label, channel, sign) in [
+            ("R", "R", Some(1.0)),
+            ("-R", "R", Some(-1.0)),
+            ("\u{2212}yaw rate", "R", Some(-1.0)),
+            ("-az", "NZ", Some(-1.0)),
+            ("az (down)", "NZ", Some(-1.0)),
+            ("az[+down]", "NZ", Some(-1.0)),
+            ("az (positive up)", "NZ", Some(1.0)),
+            ("az [-up]", "NZ", Some(-1.0)),
+            ("NZ", "nz", Some(1.0)),
+            ("az", "NZ", None),
+            ("w (down)", "W", None),
+            ("w (down)", "W (up)", Some(-1.0)),
+        ] {
+            assert_eq!(sign_between(label, channel), sign, "{label} as {channel}");
+        }
+        assert_eq!(SignedName::of("-az").name, "az");
+        assert_eq!(SignedName::of("az (g)").name, "az (g)", "a unit is no direction");
+    }
+
+    #[test]
+    fn no_name_stands_for_two_channels() {
+        let names: Vec<&str> = ALIASES.iter().flat_map(|row| row.split(' ')).collect();
+        let unique: BTreeSet<&str> = names.iter().copied().collect();
+        assert_eq!(unique.len(), names.len());
+        assert!(names.iter().all(|name| folded_name(name) == **name), "they are folded");
     }
 }

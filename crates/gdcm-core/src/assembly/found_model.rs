@@ -1,12 +1,6 @@
 //! A model as some file gave it, what it is to be in the dataset, and the rules proposed where none were made yet.
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
-use super::{ChannelRule, Rules, SignedName, same_channel};
-use crate::dataset::{ConditionRecord, ModelDraft, ResponseDraft};
-use crate::units::number;
+use super::*;
 
 /// What a file says of one channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -71,6 +65,11 @@ impl FoundModel {
             "" => self.file().to_owned(),
             variable => format!("{}#{variable}", self.file()),
         }
+    }
+
+    /// Its inputs or its outputs.
+    fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
+        side.of(&self.inputs, &self.outputs)
     }
 
     /// The measured response, where it is one.
@@ -179,8 +178,7 @@ pub fn standard_on_axis(output: &str, input: &str) -> bool {
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
 /// a helicopter as far as there are such channels. What the files do not say stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
-    let inputs = channels(models, "input", |model| &model.inputs);
-    let outputs = channels(models, "output", |model| &model.outputs);
+    let (inputs, outputs) = (channels(models, ChannelSide::Input), channels(models, ChannelSide::Output));
     let find = |channels: &[ChannelRule], name: &str| {
         channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
     };
@@ -190,8 +188,8 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
 }
 
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
-fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<ChannelLabel>) -> Vec<ChannelRule> {
-    let named = |model: &FoundModel| of(model).iter().filter(|label| label.name.is_some()).count();
+fn channels(models: &[FoundModel], side: ChannelSide) -> Vec<ChannelRule> {
+    let named = |model: &FoundModel| model.labels(side).iter().filter(|label| label.name.is_some()).count();
     let mut order: Vec<&FoundModel> = models.iter().collect();
     order.sort_by_key(|model| std::cmp::Reverse(named(model)));
     let first_is_measured = order.first().is_some_and(|model| model.response().is_some());
@@ -199,7 +197,7 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
     for model in order {
         // Models with matrices have all channels of the dataset; measured responses may have one each.
         let is_open = channels.is_empty() || (model.response().is_some() && first_is_measured);
-        for label in of(model) {
+        for label in model.labels(side) {
             // The dataset's channel has the name without the marks of a sign.
             let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else { continue };
             let name = &name;
@@ -216,9 +214,106 @@ fn channels(models: &[FoundModel], side: &str, of: fn(&FoundModel) -> &Vec<Chann
     // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
     let all_unnamed = models.iter().filter(|model| model.response().is_none()).all(|model| named(model) == 0);
     if channels.is_empty() || all_unnamed {
-        let count = models.iter().map(|model| of(model).len()).max().unwrap_or(0);
+        let count = models.iter().map(|model| model.labels(side).len()).max().unwrap_or(0);
         let missing = channels.len() + 1..=count;
         channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
     }
     channels
+}
+
+/// What names, contents and rules say of each model.
+pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
+    let mut rows: Vec<Row> = models.iter().map(|model| proposed_row(model, models, rules)).collect();
+    number_conditions(models, &mut rows);
+    propose_nominal(&mut rows);
+    for (model, row) in models.iter().zip(&mut rows) {
+        if let Some(said) = rules.rows.get(&model.key()) {
+            said.apply(row);
+        }
+    }
+    rows
+}
+
+fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
+    let facts = &model.facts;
+    let mut row = Row {
+        condition: facts.condition,
+        airspeed_kt: facts.airspeed_kt,
+        altitude_ft: facts.altitude_ft,
+        mass_kg: facts.mass_kg,
+        ..Row::default()
+    };
+    let path = without_extension(model.file());
+    let name = if model.variable().is_empty() { path.clone() } else { format!("{path}#{}", model.variable()) };
+    for pattern in &rules.patterns {
+        pattern.read(&name, &mut row);
+    }
+    // What else a hyphen and a number may be ("rev-3") is not asked about.
+    if !row.perturbation.is_empty() {
+        row.unread = unread_offsets(name.rsplit('/').next().unwrap_or(&name), &rules.patterns);
+    }
+    if let Origin::Identified { method, .. } = &model.draft.origin {
+        row.role = row.role.or(Some(RowRole::Identified));
+        row.method = row.method.or_else(|| method.clone());
+    }
+    if row.role.is_none() && model.response().is_some() {
+        row.role = Some(RowRole::Identified);
+    }
+    if row.role.is_none() && !row.perturbation.is_empty() {
+        row.role = Some(RowRole::Perturbed);
+    }
+    if row.name.is_empty() {
+        row.name = usual_name(model, all, rules, &path);
+    }
+    row
+}
+
+/// The file's name without its folder; the variable beside it where the file holds several models; "measured" of a response that
+/// is one part of a model.
+fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str) -> String {
+    let is_part = model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
+    if model.response().is_some() && is_part {
+        return "measured".to_owned();
+    }
+    let stem = path.rsplit('/').next().unwrap_or(path);
+    let several = all.iter().filter(|other| other.file() == model.file()).count() > 1;
+    match (several, model.variable()) {
+        (true, variable) if !variable.is_empty() => variable.to_owned(),
+        _ if stem.is_empty() => model.draft.name.clone(),
+        _ => stem.to_owned(),
+    }
+}
+
+fn without_extension(file: &str) -> String {
+    let file = file.replace('\\', "/");
+    let file = file.strip_suffix(".gz").unwrap_or(&file);
+    Path::new(file).with_extension("").to_string_lossy().into_owned()
+}
+
+/// Where no name says a number, each folder is a condition, in the order of their names.
+fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
+    if rows.iter().any(|row| row.condition.is_some()) {
+        return;
+    }
+    let folder = |model: &FoundModel| match without_extension(model.file()).rsplit_once('/') {
+        Some((folder, _)) => folder.to_owned(),
+        None => String::new(),
+    };
+    let folders: BTreeSet<String> = models.iter().map(folder).collect();
+    for (model, row) in models.iter().zip(rows) {
+        row.condition = folders.iter().position(|of| *of == folder(model)).map(|index| index as i64 + 1);
+    }
+}
+
+/// The only physics model of a condition at no perturbed trim is nominal.
+fn propose_nominal(rows: &mut [Row]) {
+    let conditions: BTreeSet<i64> = rows.iter().filter_map(|row| row.condition).collect();
+    for condition in conditions {
+        let of = |row: &&mut Row| row.condition == Some(condition);
+        let has_nominal = rows.iter_mut().filter(of).any(|row| row.role == Some(RowRole::Nominal));
+        let mut open: Vec<&mut Row> = rows.iter_mut().filter(of).filter(|row| row.role.is_none()).collect();
+        if let ([row], false) = (open.as_mut_slice(), has_nominal) {
+            row.role = Some(RowRole::Nominal);
+        }
+    }
 }

@@ -9,18 +9,22 @@
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod assembly;
 mod channel_match;
-mod channel_name;
 mod found_model;
-mod merge;
 mod physical_unit;
 mod problem;
 mod rules;
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::dataset::{ChannelSide, ConditionRecord, ModelDraft, Origin, ResponseDraft};
+use crate::units::number;
+
 pub use assembly::*;
 pub use channel_match::*;
-pub use channel_name::*;
 pub use found_model::*;
-use merge::*;
 pub use physical_unit::*;
 pub use problem::*;
 pub use rules::*;

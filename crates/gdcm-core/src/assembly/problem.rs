@@ -1,6 +1,6 @@
 //! What is still to be said before the files are a dataset.
 
-use super::RowRole;
+use super::*;
 
 /// What is missing or contradicts itself.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -35,8 +35,8 @@ pub enum ProblemKind {
     /// A channel that the model does not have.
     #[error("the model has no {side} {channel}; it has {found}")]
     NoChannel {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel of the dataset.
         channel: String,
         /// What the file has, in words.
@@ -65,16 +65,13 @@ pub enum ProblemKind {
         poles: usize,
     },
     /// A part of the name that says how the trim differs and is not understood.
-    #[error("\"{part}\" in its name is not understood: say how its trim differs")]
-    TrimPart {
-        /// The part.
-        part: String,
-    },
+    #[error("\"{0}\" in its name is not understood: say how its trim differs")]
+    TrimPart(String),
     /// Two channels of the model are called the same.
     #[error("two {side}s of the model can be {channel}: {found}; say which")]
     AmbiguousChannel {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel of the dataset.
         channel: String,
         /// Their names.
@@ -83,8 +80,8 @@ pub enum ProblemKind {
     /// Channels without names, and another number of them than the dataset has.
     #[error("the model has {found} {side}s without names, the dataset has {expected}; say their names")]
     Unnamed {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// How many the dataset has.
         expected: usize,
         /// How many the model has.
@@ -93,8 +90,8 @@ pub enum ProblemKind {
     /// More or fewer names are said of a model's channels than it has.
     #[error("{said} names are said for the {found} {side}s of the model; say one for each, in the file's order")]
     Names {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// How many names.
         said: usize,
         /// How many channels.
@@ -130,11 +127,8 @@ pub enum ProblemKind {
         found: usize,
     },
     /// A condition without identified models.
-    #[error("condition {condition} has no identified model")]
-    NoIdentified {
-        /// The condition.
-        condition: i64,
-    },
+    #[error("condition {0} has no identified model")]
+    NoIdentified(i64),
     /// Two models of a bundle have one name.
     #[error("the name \"{name}\" stands twice among the {bundle} models of condition {condition}")]
     Name {
@@ -193,4 +187,106 @@ impl Problem {
     pub fn of(part: usize, kind: ProblemKind) -> Self {
         Self { part: Some(part), kind }
     }
+}
+
+pub(super) fn row_problems(part: &Part) -> Vec<ProblemKind> {
+    let mut problems = Vec::new();
+    if part.row.condition.is_none() {
+        problems.push(ProblemKind::NoCondition);
+    }
+    match part.row.role {
+        None => problems.push(ProblemKind::NoRole),
+        Some(role @ (RowRole::Nominal | RowRole::Perturbed)) if part.found.response().is_some() => {
+            problems.push(ProblemKind::MeasuredPhysics(role));
+        }
+        Some(_) => {}
+    }
+    problems.extend(part.sample_time_s.is_none().then(|| missing_sample_time(part)).flatten());
+    problems
+}
+
+/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, or as
+/// little outside as an unstable mode of a helicopter is, and half of them or more (and at least two) near 1. In continuous time the
+/// latter grow within a second.
+fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
+    /// Real part of a pole near 1, and the magnitude of one that is outside by little.
+    const NEAR: f64 = 0.5;
+    const OUTSIDE: f64 = 1.05;
+    let a =
+        part.found.draft.matrices[0].as_ref().filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
+    // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
+    if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
+        return None;
+    }
+    let poles = a.complex_eigenvalues();
+    let near = poles.iter().filter(|pole| pole.re > NEAR).count();
+    let is_discrete = poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
+    is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
+}
+
+pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
+    let first = parts[0].0;
+    let mut kinds = contradictions(condition, parts);
+    if parts.iter().all(|(_, part)| part.row.airspeed_kt.is_none()) {
+        kinds.push(ProblemKind::NoAirspeed);
+    }
+    let count = |role: RowRole| parts.iter().filter(|(_, part)| part.row.role == Some(role)).count();
+    if count(RowRole::Nominal) != 1 {
+        kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
+    }
+    if count(RowRole::Identified) == 0 {
+        kinds.push(ProblemKind::NoIdentified(condition));
+    }
+    let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
+    problems.extend(name_problems(condition, parts));
+    problems
+}
+
+/// A field of a flight condition: its name, and what a row says of it.
+type Field<'f> = (&'static str, &'f dyn Fn(&Row) -> Option<String>);
+
+fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> {
+    let number = |value: Option<f64>| value.map(crate::units::number);
+    let fields: [Field<'_>; 5] = [
+        ("airspeed [kt]", &|row| number(row.airspeed_kt)),
+        ("altitude [ft]", &|row| number(row.altitude_ft)),
+        ("mass [kg]", &|row| number(row.mass_kg)),
+        ("altitude", &|row| row.altitude.clone()),
+        ("weight", &|row| row.weight.clone()),
+    ];
+    let contradiction = |(field, of): Field<'_>| {
+        let mut values = parts.iter().filter_map(|(_, part)| of(&part.row));
+        let first = values.next()?;
+        let second = values.find(|value| *value != first)?;
+        Some(ProblemKind::Contradiction { condition, field, first, second })
+    };
+    fields.into_iter().filter_map(contradiction).collect()
+}
+
+/// Names that stand twice in a bundle; measured responses of one name are parts of one model.
+fn name_problems(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
+    let mut seen: BTreeMap<(bool, &str), &Part> = BTreeMap::new();
+    let mut problems = Vec::new();
+    for (index, part) in parts {
+        let is_identified = part.row.role == Some(RowRole::Identified);
+        let Some(earlier) = seen.insert((is_identified, &part.row.name), part) else { continue };
+        match (earlier.found.response(), part.found.response()) {
+            (Some(a), Some(b)) if a.omega == b.omega => {}
+            (Some(a), Some(b)) => {
+                let grid = |of: &ResponseDraft| {
+                    let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
+                    (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])
+                };
+                let (first, second) = (earlier.found.key(), part.found.key());
+                let kind = ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) };
+                problems.push(Problem::of(*index, kind));
+            }
+            _ => {
+                let bundle = if is_identified { "identified" } else { "physics" };
+                let name = part.row.name.clone();
+                problems.push(Problem::of(*index, ProblemKind::Name { condition, bundle, name }));
+            }
+        }
+    }
+    problems
 }

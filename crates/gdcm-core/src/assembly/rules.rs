@@ -1,15 +1,10 @@
 //! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
-use std::collections::BTreeMap;
-use std::fmt;
+use super::*;
 use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
 
-use serde::{Deserialize, Serialize};
-
-use super::{Row, RowRole, standard_on_axis};
-use crate::dataset::ChannelSide;
 use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;
 
@@ -183,10 +178,7 @@ impl Default for Rules {
 impl Rules {
     /// The inputs or the outputs of the dataset.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
-        match side {
-            ChannelSide::Input => &mut self.inputs,
-            ChannelSide::Output => &mut self.outputs,
-        }
+        side.of(&mut self.inputs, &mut self.outputs)
     }
 
     /// Calls a channel of the dataset otherwise. Files call it as before; what was said of it, on-axis responses, conversions and signs,
@@ -202,22 +194,20 @@ impl Rules {
             channel.aliases.push(old.clone());
         }
         for (output, input) in &mut self.on_axis {
-            let of_side = if side == ChannelSide::Input { input } else { output };
+            let of_side = side.of(input, output);
             if *of_side == old {
                 of_side.clone_from(&name);
             }
         }
-        let others = if side == ChannelSide::Input { &self.outputs } else { &self.inputs };
-        let pair = |other: &ChannelRule| match side {
-            ChannelSide::Input => (other.name.clone(), name.clone()),
-            ChannelSide::Output => (name.clone(), other.name.clone()),
+        let of_new = |other: &ChannelRule| {
+            let (other, name) = (other.name.clone(), name.clone());
+            if side == ChannelSide::Input { (other, name) } else { (name, other) }
         };
-        let pairs: Vec<_> = others.iter().map(pair).filter(|(output, input)| standard_on_axis(output, input)).collect();
-        pairs.into_iter().for_each(|pair| {
-            if !self.on_axis.contains(&pair) {
-                self.on_axis.push(pair)
+        for pair in side.of(&self.outputs, &self.inputs).iter().map(of_new) {
+            if standard_on_axis(&pair.0, &pair.1) && !self.on_axis.contains(&pair) {
+                self.on_axis.push(pair);
             }
-        });
+        }
         self.units.iter_mut().filter(|unit| unit.channel == old).for_each(|unit| unit.channel.clone_from(&name));
         let of_models = self.rows.values_mut().filter_map(|row| row.signs.as_mut());
         for signs in of_models.chain(self.role_signs.values_mut()).chain([&mut self.signs]) {
@@ -230,12 +220,8 @@ impl Rules {
     /// The signs that are said of the channels of a model: those of the model before those of its role, these before those of all.
     pub fn signs_of(&self, key: &str, role: Option<RowRole>) -> Signs {
         let mut signs = self.signs.clone();
-        let role = match role {
-            Some(RowRole::Identified) => Some("identified"),
-            Some(RowRole::Nominal | RowRole::Perturbed) => Some("physics"),
-            None => None,
-        };
-        let of_role = role.and_then(|role| self.role_signs.get(role));
+        let bundle = role.map(|role| if role == RowRole::Identified { "identified" } else { "physics" });
+        let of_role = bundle.and_then(|bundle| self.role_signs.get(bundle));
         let of_model = self.rows.get(key).and_then(|row| row.signs.as_ref());
         signs.extend(of_role.into_iter().chain(of_model).flatten().map(|(name, sign)| (name.clone(), *sign)));
         signs
@@ -253,7 +239,7 @@ const MOST_MEMORY: usize = 1 << 20;
 /// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft`, `weight`, `mass_kg`, `method`, `name` | that |
 /// | `by_roll_deg`, `by_airspeed_kt`, `by_...` | the offset of the trim in the coordinate `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
 /// | `nominal`, `perturbed`, `identified` | anything: the role is this |
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,
 }
@@ -284,19 +270,9 @@ pub enum PatternError {
     },
 }
 
-const GROUPS: [&str; 11] = [
-    "condition",
-    "airspeed_kt",
-    "altitude",
-    "altitude_ft",
-    "weight",
-    "mass_kg",
-    "method",
-    "name",
-    "nominal",
-    "perturbed",
-    "identified",
-];
+/// What groups are named, besides those of offsets.
+const GROUPS: &str =
+    "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
 /// What a group of an offset begins with.
 const OFFSET: &str = "by_";
 
@@ -310,7 +286,8 @@ impl NamePattern {
         let built = RegexBuilder::new(pattern).case_insensitive(true).size_limit(MOST_MEMORY).build();
         let regex =
             built.map_err(|error| wrong(error.to_string().lines().last().unwrap_or_default().trim().to_owned()))?;
-        let unknown = regex.capture_names().flatten().find(|name| !GROUPS.contains(name) && !name.starts_with(OFFSET));
+        let is_known = |name: &&str| name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == *name);
+        let unknown = regex.capture_names().flatten().find(|name| !is_known(name));
         match unknown {
             Some(group) => Err(PatternError::Group { pattern: pattern.to_owned(), group: group.to_owned() }),
             None => Ok(Self { regex }),
@@ -378,12 +355,6 @@ fn offset(text: &str) -> Option<f64> {
     value.is_finite().then_some(sign * value)
 }
 
-impl fmt::Debug for NamePattern {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "NamePattern({})", self.as_str())
-    }
-}
-
 impl PartialEq for NamePattern {
     fn eq(&self, other: &Self) -> bool {
         self.as_str() == other.as_str()
@@ -392,12 +363,11 @@ impl PartialEq for NamePattern {
 
 /// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> &'static [NamePattern] {
-    /// Compiled once: every record asks for them.
-    static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(compiled_patterns);
     &STANDARD
 }
 
-fn compiled_patterns() -> Vec<NamePattern> {
+/// Compiled once: every record asks for them.
+static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
     let offset = |words: &str, coordinate: &str| {
         format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
@@ -424,7 +394,7 @@ fn compiled_patterns() -> Vec<NamePattern> {
     ];
     // Each is tried by a test: none is left out here.
     texts.iter().filter_map(|text| NamePattern::new(text).ok()).collect()
-}
+});
 
 #[cfg(test)]
 mod tests {

@@ -1,8 +1,10 @@
 //! Channels of the helicopter, one response of a dataset, and a table with one entry for each response.
 
-use std::ops::{Index, IndexMut};
-
+use crate::message_text::quoted;
+use crate::whole_number::whole;
 use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::{Index, IndexMut};
 
 /// An input (a control position) or an output (a measured motion), as the dataset names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,10 +53,7 @@ pub struct PairTable<T> {
 impl<T> PairTable<T> {
     /// The table whose entry of each response is `entry(pair)`.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Pair) -> T) -> Self {
-        let entries = (0..outputs)
-            .flat_map(|output| (0..inputs).map(move |input| Pair { output, input }))
-            .map(&mut entry)
-            .collect();
+        let entries = pairs(outputs, inputs).map(&mut entry).collect();
         Self { outputs, inputs, entries }
     }
 
@@ -68,6 +67,13 @@ impl<T> PairTable<T> {
         self.inputs
     }
 
+    /// Where the entry of a response stands.
+    fn place(&self, pair: Pair) -> usize {
+        let (outputs, inputs) = (self.outputs, self.inputs);
+        assert!(pair.output < outputs && pair.input < inputs, "{pair:?} is outside a {outputs} x {inputs} table");
+        pair.output * inputs + pair.input
+    }
+
     /// The entry of a response; `None` where the table has no such response.
     pub fn get(&self, pair: Pair) -> Option<&T> {
         (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
@@ -75,8 +81,7 @@ impl<T> PairTable<T> {
 
     /// Every response, row by row.
     pub fn pairs(&self) -> impl Iterator<Item = Pair> + use<T> {
-        let inputs = self.inputs;
-        (0..self.outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
+        pairs(self.outputs, self.inputs)
     }
 
     /// Every response with its entry, row by row.
@@ -93,6 +98,10 @@ impl<T> PairTable<T> {
     pub fn map<U>(&self, mut f: impl FnMut(Pair, &T) -> U) -> PairTable<U> {
         PairTable::from_fn(self.outputs, self.inputs, |pair| f(pair, &self[pair]))
     }
+}
+
+fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
+    (0..outputs).flat_map(move |output| (0..inputs).map(move |input| Pair { output, input }))
 }
 
 impl<T: Clone> PairTable<T> {
@@ -113,25 +122,14 @@ impl<T> Index<Pair> for PairTable<T> {
     type Output = T;
 
     fn index(&self, pair: Pair) -> &T {
-        assert!(
-            pair.output < self.outputs && pair.input < self.inputs,
-            "{pair:?} is outside a {} x {} table",
-            self.outputs,
-            self.inputs
-        );
-        &self.entries[pair.output * self.inputs + pair.input]
+        &self.entries[self.place(pair)]
     }
 }
 
 impl<T> IndexMut<Pair> for PairTable<T> {
     fn index_mut(&mut self, pair: Pair) -> &mut T {
-        assert!(
-            pair.output < self.outputs && pair.input < self.inputs,
-            "{pair:?} is outside a {} x {} table",
-            self.outputs,
-            self.inputs
-        );
-        &mut self.entries[pair.output * self.inputs + pair.input]
+        let place = self.place(pair);
+        &mut self.entries[place]
     }
 }
 
@@ -145,8 +143,153 @@ pub enum ChannelSide {
     Output,
 }
 
+impl ChannelSide {
+    /// What is of this side, out of what is of the inputs and what is of the outputs.
+    pub fn of<T>(self, inputs: T, outputs: T) -> T {
+        match self {
+            Self::Input => inputs,
+            Self::Output => outputs,
+        }
+    }
+}
+
 impl std::fmt::Display for ChannelSide {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if *self == Self::Input { "input" } else { "output" })
+        f.write_str(self.of("input", "output"))
+    }
+}
+
+// What conditions and models are called, whatever their order in a file, and where in a dataset something stands.
+
+/// A condition of a dataset that is being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ConditionPlace {
+    /// Its position, counted from 1.
+    pub position: usize,
+    /// Its id, where that can be read.
+    pub id: Option<i64>,
+}
+
+/// A model of a dataset that is being read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelPlace {
+    /// Which bundle of the condition.
+    pub bundle: BundleKind,
+    /// Its position in the bundle, counted from 1.
+    pub position: usize,
+    /// Its name, where that can be read.
+    pub name: Option<String>,
+}
+
+/// Where something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Location {
+    /// The condition.
+    pub condition: Option<ConditionPlace>,
+    /// The model.
+    pub model: Option<ModelPlace>,
+    /// The entry, in words; empty for the whole.
+    pub entry: String,
+}
+
+impl Location {
+    /// A place in words: "on-axis pair 3".
+    pub fn entry(words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..Self::default() }
+    }
+
+    /// A condition; `position` counts from 1.
+    pub fn condition(position: usize, id: i64) -> Self {
+        Self { condition: Some(ConditionPlace { position, id: Some(id) }), ..Self::default() }
+    }
+
+    /// A model of this condition; `position` counts from 1.
+    pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
+        let model = Some(ModelPlace { bundle, position, name: Some(name.to_owned()) });
+        Self { condition: self.condition.clone(), model, entry: String::new() }
+    }
+
+    /// An entry of this condition or model.
+    pub fn at(&self, words: impl Into<String>) -> Self {
+        Self { entry: words.into(), ..self.clone() }
+    }
+
+    /// The place followed by a colon and a space; nothing for the file as a whole.
+    pub fn before(&self) -> String {
+        let words = self.to_string();
+        if words.is_empty() { words } else { words + ": " }
+    }
+}
+
+impl fmt::Display for Location {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let condition = self.condition.as_ref().map(|ConditionPlace { position, id }| match id {
+            Some(id) => format!("condition {id} (number {position} in the file)"),
+            None => format!("condition number {position} in the file"),
+        });
+        let model = self.model.as_ref().map(|ModelPlace { bundle, position, name }| match name {
+            Some(name) => format!("{bundle} model {} (number {position})", quoted(name)),
+            None => format!("{bundle} model number {position}"),
+        });
+        let entry = Some(self.entry.clone()).filter(|entry| !entry.is_empty());
+        let words: Vec<String> = [condition, model, entry].into_iter().flatten().collect();
+        formatter.write_str(&words.join(", "))
+    }
+}
+
+/// Which of a condition's two bundles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BundleKind {
+    /// The physics models: one nominal, the others at perturbed trims.
+    Physics,
+    /// The models identified from flight.
+    Identified,
+}
+
+impl BundleKind {
+    /// Both bundles, the physics models first.
+    pub const BOTH: [BundleKind; 2] = [BundleKind::Physics, BundleKind::Identified];
+}
+
+impl fmt::Display for BundleKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            BundleKind::Physics => "physics",
+            BundleKind::Identified => "identified",
+        })
+    }
+}
+
+/// A flight condition: the id that its dataset gives it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct ConditionId(#[serde(deserialize_with = "whole")] pub i64);
+
+impl fmt::Display for ConditionId {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}", self.0)
+    }
+}
+
+/// A model of a dataset: it stays the same model when others are added, removed, replaced or put in another order.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ModelId {
+    /// Its condition.
+    pub condition: ConditionId,
+    /// Its bundle in that condition.
+    pub bundle: BundleKind,
+    /// Its name in that bundle.
+    pub name: String,
+}
+
+impl ModelId {
+    /// The model of this name in a bundle of a condition.
+    pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
+        Self { condition, bundle, name: name.into() }
+    }
+}
+
+impl fmt::Display for ModelId {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "condition {}, {} model \"{}\"", self.condition, self.bundle, self.name)
     }
 }

@@ -39,8 +39,8 @@ impl FlightState {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
-    physics: Vec<Model>,
-    identified: Vec<Model>,
+    /// Physics models, identified models.
+    bundles: [Vec<Model>; 2],
     nominal: usize,
     records: Vec<ConditionRecord>,
     /// Indices of the physics and of the identified models in the order of their names: a list of a thousand models asks for each by name.
@@ -61,11 +61,8 @@ pub enum ConditionError {
         value: f64,
     },
     /// A bundle holds no model.
-    #[error("the {bundle} bundle: expected at least one model, found none")]
-    EmptyBundle {
-        /// Which.
-        bundle: BundleKind,
-    },
+    #[error("the {0} bundle: expected at least one model, found none")]
+    EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.
     #[error("the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
     DuplicateName {
@@ -116,15 +113,18 @@ impl Condition {
     /// The condition with these models, in file order.
     pub fn new(flight_state: FlightState, physics: Vec<Model>, identified: Vec<Model>) -> Result<Self, ConditionError> {
         check_flight_state(&flight_state)?;
-        check_bundle(BundleKind::Physics, &physics)?;
-        check_bundle(BundleKind::Identified, &identified)?;
+        let bundles = [physics, identified];
+        for (bundle, models) in BundleKind::BOTH.into_iter().zip(&bundles) {
+            check_bundle(bundle, models)?;
+        }
+        let physics = &bundles[0];
         let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
         match nominal[..] {
             [nominal] => {
-                let by_name = [by_name(&physics), by_name(&identified)];
-                Ok(Self { flight_state, physics, identified, nominal, records: Vec::new(), by_name })
+                let by_name = bundles.each_ref().map(|models| by_name(models));
+                Ok(Self { flight_state, bundles, nominal, records: Vec::new(), by_name })
             }
-            _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(&physics, &nominal) }),
+            _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(physics, &nominal) }),
         }
     }
 
@@ -156,7 +156,7 @@ impl Condition {
                 None => kept.push(record),
             }
         }
-        Self::new(self.flight_state.clone(), self.physics.clone(), models)?.with_records(kept)
+        Self::new(self.flight_state.clone(), self.bundles[0].clone(), models)?.with_records(kept)
     }
 
     /// The flight records, in file order; none where the dataset names none.
@@ -176,17 +176,13 @@ impl Condition {
 
     /// The models of one bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Model] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        &self.bundles[kind as usize]
     }
 
     /// Position of the model of this name in its bundle, in file order.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
-        let [physics, identified] = &self.by_name;
-        let order = if kind == BundleKind::Physics { physics } else { identified };
+        let order = &self.by_name[kind as usize];
         let place = order.binary_search_by(|index| models[*index].name.as_str().cmp(name)).ok()?;
         Some(order[place])
     }
@@ -226,7 +222,7 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
 
 fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
     if models.is_empty() {
-        return Err(ConditionError::EmptyBundle { bundle });
+        return Err(ConditionError::EmptyBundle(bundle));
     }
     for (second, model) in models.iter().enumerate() {
         if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
@@ -310,7 +306,7 @@ impl RecordKind {
 }
 
 /// A flight record of a condition: not its samples, but which file holds them and what is done with them.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConditionRecord {
     /// Name, unique in the condition.
     pub name: String,
@@ -383,18 +379,6 @@ impl ConditionRecord {
 
     /// A record that is used, of an unknown manoeuvre.
     pub fn new(name: impl Into<String>, file: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            file: file.into(),
-            variable: None,
-            sha256: None,
-            kind: RecordKind::Other,
-            held_out: false,
-            used: true,
-            sample_time_s: None,
-            used_s: Vec::new(),
-            part_s: None,
-            remedies: BTreeMap::new(),
-        }
+        Self { name: name.into(), file: file.into(), used: true, ..Self::default() }
     }
 }

@@ -20,11 +20,8 @@ pub struct Dataset {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DatasetError {
     /// There are no inputs, no outputs or no conditions.
-    #[error("{list}: expected at least one entry, found none")]
-    Empty {
-        /// `inputs`, `outputs` or `conditions`.
-        list: &'static str,
-    },
+    #[error("{0}: expected at least one entry, found none")]
+    Empty(&'static str),
     /// Two channels of a list share a name.
     #[error("{list}: the name \"{name}\" stands twice; names must differ")]
     DuplicateChannel {
@@ -44,34 +41,27 @@ pub enum DatasetError {
         second: usize,
     },
     /// The on-axis table has another shape than the channels.
-    #[error("on_axis: expected a {outputs} x {inputs} table, found {rows} x {columns}")]
+    #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
     OnAxisShape {
-        /// Number of output channels.
-        outputs: usize,
-        /// Number of input channels.
-        inputs: usize,
-        /// Rows found.
-        rows: usize,
-        /// Columns found.
-        columns: usize,
+        /// Number of output and of input channels.
+        expected: (usize, usize),
+        /// Rows and columns found.
+        found: (usize, usize),
     },
     /// A model has another number of outputs or inputs than there are channels.
     #[error(
-        "condition {condition}, model \"{model}\": expected {outputs} outputs x {inputs} inputs, found {rows} x {columns}"
+        "condition {condition}, model \"{model}\": expected {} outputs x {} inputs, found {} x {}",
+        expected.0, expected.1, found.0, found.1
     )]
     ModelShape {
         /// The condition's id.
         condition: ConditionId,
         /// The model's name.
         model: String,
-        /// Number of output channels.
-        outputs: usize,
-        /// Number of input channels.
-        inputs: usize,
-        /// Outputs of the model.
-        rows: usize,
-        /// Inputs of the model.
-        columns: usize,
+        /// Number of output and of input channels.
+        expected: (usize, usize),
+        /// Outputs and inputs of the model.
+        found: (usize, usize),
     },
 }
 
@@ -97,12 +87,12 @@ impl Dataset {
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
-        let (outputs, inputs) = (header.outputs.len(), header.inputs.len());
-        let (rows, columns) = (header.on_axis.outputs(), header.on_axis.inputs());
-        if (rows, columns) != (outputs, inputs) {
-            return Err(DatasetError::OnAxisShape { outputs, inputs, rows, columns });
+        let expected = (header.outputs.len(), header.inputs.len());
+        let found = (header.on_axis.outputs(), header.on_axis.inputs());
+        if found != expected {
+            return Err(DatasetError::OnAxisShape { expected, found });
         }
-        check_conditions(&conditions, outputs, inputs)?;
+        check_conditions(&conditions, expected)?;
         Ok(Self { header, conditions: conditions.into_iter().map(Arc::new).collect() })
     }
 
@@ -162,7 +152,8 @@ impl Dataset {
     /// # Errors
     /// [`DatasetError::ModelShape`].
     pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
-        check_conditions(std::slice::from_ref(&condition), self.header.outputs.len(), self.header.inputs.len())?;
+        let shape = (self.header.outputs.len(), self.header.inputs.len());
+        check_conditions(std::slice::from_ref(&condition), shape)?;
         let (id, condition) = (condition.id(), Arc::new(condition));
         let replaced = |other: &Arc<Condition>| if other.id() == id { condition.clone() } else { other.clone() };
         Ok(Self { conditions: self.conditions.iter().map(replaced).collect(), ..self.clone() })
@@ -215,7 +206,7 @@ impl Dataset {
 
 fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), DatasetError> {
     if channels.is_empty() {
-        return Err(DatasetError::Empty { list });
+        return Err(DatasetError::Empty(list));
     }
     for (index, channel) in channels.iter().enumerate() {
         if channels[..index].iter().any(|earlier| earlier.name == channel.name) {
@@ -225,9 +216,9 @@ fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), Datase
     Ok(())
 }
 
-fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> Result<(), DatasetError> {
+fn check_conditions(conditions: &[Condition], expected: (usize, usize)) -> Result<(), DatasetError> {
     if conditions.is_empty() {
-        return Err(DatasetError::Empty { list: "conditions" });
+        return Err(DatasetError::Empty("conditions"));
     }
     for (second, condition) in conditions.iter().enumerate() {
         let id = condition.id();
@@ -235,10 +226,9 @@ fn check_conditions(conditions: &[Condition], outputs: usize, inputs: usize) -> 
             return Err(DatasetError::DuplicateId { id, first: first + 1, second: second + 1 });
         }
         for model in BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)) {
-            let (rows, columns) = model.dynamics.shape();
-            if (rows, columns) != (outputs, inputs) {
-                let (condition, model) = (id, model.name.clone());
-                return Err(DatasetError::ModelShape { condition, model, outputs, inputs, rows, columns });
+            let found = model.dynamics.shape();
+            if found != expected {
+                return Err(DatasetError::ModelShape { condition: id, model: model.name.clone(), expected, found });
             }
         }
     }

@@ -30,11 +30,8 @@ pub struct Estimate {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasuredResponseError {
     /// Fewer than two frequencies.
-    #[error("expected at least 2 frequencies, found {found}")]
-    TooFewFrequencies {
-        /// How many there are.
-        found: usize,
-    },
+    #[error("expected at least 2 frequencies, found {0}")]
+    TooFewFrequencies(usize),
     /// A frequency is not finite, not positive, or not above the one before.
     #[error("frequency {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
     Frequency {
@@ -156,7 +153,7 @@ impl MeasuredResponse {
 
 pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseError> {
     if omega.len() < 2 {
-        return Err(MeasuredResponseError::TooFewFrequencies { found: omega.len() });
+        return Err(MeasuredResponseError::TooFewFrequencies(omega.len()));
     }
     let mut before = 0.0;
     for (index, &value) in omega.iter().enumerate() {

@@ -4,8 +4,6 @@ mod channel;
 mod condition;
 #[expect(clippy::module_inception, reason = "the room is named by what it holds")]
 mod dataset;
-pub mod limits;
-mod location;
 mod measured_response;
 mod model;
 mod state_space;
@@ -14,8 +12,34 @@ mod unchecked_dataset;
 pub use channel::*;
 pub use condition::*;
 pub use dataset::*;
-pub use location::*;
 pub use measured_response::*;
 pub use model::*;
 pub use state_space::*;
 pub use unchecked_dataset::*;
+
+/// The most that is read of anything: what a mistaken or hostile file can make the program allocate, and how long it can work.
+pub mod limits {
+    /// Bytes of text in a file, packed or not: 128 MiB, some 500 conditions of the example's size.
+    pub const LARGEST_TEXT: u64 = 128 << 20;
+    /// Inputs, and outputs: as many as gains and delays are tested with. Tables of pairs grow with the product, the search for the
+    /// best gains faster.
+    pub const MOST_CHANNELS: usize = 32;
+    /// On-axis, held or ignored responses.
+    pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
+    /// Conditions: comparing their ids takes time that grows with the square.
+    pub const MOST_CONDITIONS: usize = 5000;
+    /// Models of a bundle: comparing their names takes time that grows with the square.
+    pub const MOST_MODELS: usize = 5000;
+    /// Records of a condition: comparing their names takes time that grows with the square.
+    pub const MOST_RECORDS: usize = 1000;
+    /// Pieces of a record, and records that a model says it was made of.
+    pub const MOST_PIECES: usize = 1000;
+    /// Models of all conditions together.
+    pub const MOST_MODELS_IN_ALL: usize = 50_000;
+    /// States of a model: the time of a response grows with the third power.
+    pub const MOST_STATES: usize = 1000;
+    /// Frequencies of a measured response.
+    pub const MOST_FREQUENCIES: usize = 100_000;
+    /// Coordinates of a perturbation.
+    pub const MOST_COORDINATES: usize = 50;
+}

@@ -22,18 +22,14 @@ pub struct StateSpace {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
     /// A matrix has another shape than the others require.
-    #[error("matrix {matrix}: expected {expected_rows} x {expected_columns}, found {rows} x {columns}")]
+    #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
         matrix: char,
-        /// Rows required.
-        expected_rows: usize,
-        /// Columns required.
-        expected_columns: usize,
-        /// Rows found.
-        rows: usize,
-        /// Columns found.
-        columns: usize,
+        /// Rows and columns required.
+        expected: (usize, usize),
+        /// Rows and columns found.
+        found: (usize, usize),
     },
     /// An entry is NaN or infinite.
     #[error("matrix {matrix}, row {row}, column {column}: expected a finite number, found {value}")]
@@ -57,15 +53,9 @@ impl StateSpace {
     /// of `D`.
     pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, StateSpaceError> {
         let (n, p, m) = (a.nrows(), d.nrows(), d.ncols());
-        for (matrix, of, rows, columns) in [('A', &a, n, n), ('B', &b, n, m), ('C', &c, p, n)] {
-            if of.shape() != (rows, columns) {
-                return Err(StateSpaceError::Shape {
-                    matrix,
-                    expected_rows: rows,
-                    expected_columns: columns,
-                    rows: of.nrows(),
-                    columns: of.ncols(),
-                });
+        for (matrix, of, expected) in [('A', &a, (n, n)), ('B', &b, (n, m)), ('C', &c, (p, n))] {
+            if of.shape() != expected {
+                return Err(StateSpaceError::Shape { matrix, expected, found: of.shape() });
             }
         }
         for (matrix, of) in [('A', &a), ('B', &b), ('C', &c), ('D', &d)] {
@@ -145,11 +135,8 @@ pub struct Timing {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
     /// A sample time is not finite or not positive.
-    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*value))]
-    SampleTime {
-        /// What stands there.
-        value: f64,
-    },
+    #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
+    SampleTime(f64),
     /// A list of delays has another length than there are channels.
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
@@ -205,7 +192,7 @@ impl Timing {
     /// The timing of a model of `outputs` and `inputs`, delays that are all zero left out: such a model is the one without.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
-            return Err(TimingError::SampleTime { value });
+            return Err(TimingError::SampleTime(value));
         }
         Ok(Self {
             sample_time_s: self.sample_time_s,

@@ -187,11 +187,8 @@ pub enum DraftFault {
         input: String,
     },
     /// A model has some matrices, but not all four.
-    #[error("matrix {matrix} is missing; a model needs A, B, C and D")]
-    MissingMatrix {
-        /// `A`, `B`, `C` or `D`.
-        matrix: char,
-    },
+    #[error("matrix {0} is missing; a model needs A, B, C and D")]
+    MissingMatrix(char),
     /// A model has both matrices and frequency data.
     #[error("both matrices and a measured response are given; keep one of them")]
     BothDynamics,
@@ -269,7 +266,7 @@ impl DatasetDraft {
     /// Every check there is, in this one place; its faults are one at least.
     fn checked_whole(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let whole = |error: DraftFault| DraftError::new(Location::default(), error);
-        let mut checker = Checker::of(self.outputs.len(), self.inputs.len());
+        let mut checker = Checker { outputs: self.outputs.len(), inputs: self.inputs.len(), ..Checker::default() };
         checker.count(Location::entry("inputs"), self.inputs.len(), MOST_CHANNELS);
         checker.count(Location::entry("outputs"), self.outputs.len(), MOST_CHANNELS);
         checker.count(Location::entry("conditions"), self.conditions.len(), MOST_CONDITIONS);
@@ -320,13 +317,14 @@ impl Dataset {
     /// What keeps the draft from being a model of the dataset, with its place in the model.
     pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
         let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
-        let mut checker = Checker::of(outputs, inputs);
+        let mut checker = Checker { outputs, inputs, ..Checker::default() };
         let model = checker.model(Location::default(), BundleKind::Identified, draft)?;
         Ok((model, checker.warnings))
     }
 }
 
 /// What the checks of models need to know, and what they find.
+#[derive(Default)]
 struct Checker {
     outputs: usize,
     inputs: usize,
@@ -335,11 +333,6 @@ struct Checker {
 }
 
 impl Checker {
-    /// For models of so many outputs and inputs.
-    fn of(outputs: usize, inputs: usize) -> Self {
-        Self { outputs, inputs, faults: Vec::new(), warnings: Vec::new() }
-    }
-
     /// Notes a fault.
     fn keep<T>(&mut self, checked: Result<T, DraftError>) -> Option<T> {
         checked.map_err(|fault| self.faults.push(fault)).ok()
@@ -432,7 +425,7 @@ impl Checker {
         let (p, m) = (self.outputs, self.inputs);
         let [a, b, c, d] = matrices;
         let given = |matrix: char, of: Option<DMatrix<f64>>| {
-            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix { matrix }))
+            of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix(matrix)))
         };
         let (a, b, c, d) = (given('A', a)?, given('B', b)?, given('C', c)?, given('D', d)?);
         // Checked before the others are checked against it, so that they are not blamed for it.

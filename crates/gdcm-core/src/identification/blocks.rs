@@ -8,7 +8,6 @@
 //! A block holds a complex pair *or* two real poles, so that pairs may split and merge.
 
 use super::*;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Imaginary part over modulus below which an eigenvalue is real: what the Schur iteration leaves of it.
 const REAL: f64 = 1e-9;
@@ -92,9 +91,11 @@ impl BlockModel {
     /// are too close for their eigenvectors to be told apart.
     pub(super) fn of(model: &StateSpace) -> Option<Self> {
         let order = model.order();
-        let modes = if order > 0 { Modes::of(model)? } else { return None };
+        if order == 0 {
+            return None;
+        }
         let (mut blocks, mut basis, mut next) = (Vec::new(), DMatrix::zeros(order, order), 0);
-        for (block, columns) in modes.blocks() {
+        for (block, columns) in modal_blocks(model)? {
             columns.iter().enumerate().for_each(|(k, column)| basis.set_column(next + k, column));
             next += block.size();
             blocks.push(block);
@@ -221,75 +222,63 @@ impl BlockModel {
     }
 }
 
-/// The eigenvalues of `A` with their eigenvectors.
-struct Modes {
-    /// One of each complex pair (positive imaginary part), by modulus.
-    complex: Vec<(Complex<f64>, DVector<Complex<f64>>)>,
-    /// Real ones, by modulus; signs such that the outputs of neighbours agree.
-    real: Vec<(f64, DVector<f64>)>,
-}
-
-impl Modes {
-    fn of(model: &StateSpace) -> Option<Self> {
-        let order = model.order();
-        let schur = crate::response::SchurForm::of(model.a())?;
-        let (mut complex, mut real) = (Vec::new(), Vec::new());
-        for at in 0..order {
-            let eigenvalue = schur.t[(at, at)];
-            let vector = schur.eigenvector(at);
-            let largest = vector[vector.icamax()];
-            // Turned so that its largest entry is real.
-            let vector = vector * (largest.conj() / largest.norm());
-            if eigenvalue.im.abs() <= REAL * eigenvalue.norm() {
-                real.push((eigenvalue.re, vector.map(|entry| entry.re)));
-            } else if eigenvalue.im > 0.0 {
-                complex.push((eigenvalue, vector));
-            }
+/// The blocks of a model, pairs before real poles and each by modulus, with the columns of the basis in which `A` has them: `t2` of the
+/// invariant subspace, `t1 = A t2 + a1 t2`. None where poles are too close to be told apart.
+fn modal_blocks(model: &StateSpace) -> Option<Vec<(Block, Vec<DVector<f64>>)>> {
+    let order = model.order();
+    let schur = SchurForm::of(model.a())?;
+    // One of each complex pair, that with a positive imaginary part.
+    let mut complex: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
+    let mut real: Vec<(f64, DVector<f64>)> = Vec::new();
+    for at in 0..order {
+        let eigenvalue = schur.t[(at, at)];
+        let vector = schur.eigenvector(at);
+        let largest = vector[vector.icamax()];
+        // Turned so that its largest entry is real.
+        let vector = vector * (largest.conj() / largest.norm());
+        if eigenvalue.im.abs() <= REAL * eigenvalue.norm() {
+            real.push((eigenvalue.re, vector.map(|entry| entry.re)));
+        } else if eigenvalue.im > 0.0 {
+            complex.push((eigenvalue, vector));
         }
-        if 2 * complex.len() + real.len() != order {
-            return None;
-        }
-        complex.sort_by(|(a, _), (b, _)| a.norm().total_cmp(&b.norm()));
-        real.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
-        // The outputs of neighbouring real modes with one sign: their difference then says how they differ.
-        for k in 1..real.len() {
-            if (model.c() * &real[k - 1].1).dot(&(model.c() * &real[k].1)) < 0.0 {
-                real[k].1.neg_mut();
-            }
-        }
-        Some(Self { complex, real })
     }
-
-    /// The blocks with the columns of the basis in which `A` has them: `t2` of the invariant subspace, `t1 = A t2 + a1 t2`.
-    fn blocks(&self) -> Vec<(Block, Vec<DVector<f64>>)> {
-        let mut blocks = Vec::new();
-        for (eigenvalue, vector) in &self.complex {
-            let block = Block::Pair { a0: eigenvalue.norm_sqr(), a1: -2.0 * eigenvalue.re };
-            let second = vector.map(|entry| entry.im);
-            let image = vector.map(|entry| (entry * eigenvalue).im);
-            blocks.push((block, vec![image + &second * (-2.0 * eigenvalue.re), second]));
-        }
-        for pair in self.real.chunks(2) {
-            match pair {
-                [(one, first), (two, second)] => {
-                    let block = Block::Pair { a0: one * two, a1: -(one + two) };
-                    // Of one on both: a real mode each.
-                    let lower = (second - first) / (two - one);
-                    let upper = (first * *two - second * *one) / (two - one);
-                    blocks.push((block, vec![upper, lower]));
-                }
-                [(pole, vector)] => blocks.push((Block::Single(*pole), vec![vector.clone()])),
-                _ => {}
-            }
-        }
-        blocks
+    if 2 * complex.len() + real.len() != order {
+        return None;
     }
+    complex.sort_by(|(a, _), (b, _)| a.norm().total_cmp(&b.norm()));
+    real.sort_by(|(a, _), (b, _)| a.abs().total_cmp(&b.abs()));
+    // The outputs of neighbouring real modes with one sign: their difference then says how they differ.
+    for k in 1..real.len() {
+        if (model.c() * &real[k - 1].1).dot(&(model.c() * &real[k].1)) < 0.0 {
+            real[k].1.neg_mut();
+        }
+    }
+    let mut blocks = Vec::new();
+    for (eigenvalue, vector) in &complex {
+        let block = Block::Pair { a0: eigenvalue.norm_sqr(), a1: -2.0 * eigenvalue.re };
+        let second = vector.map(|entry| entry.im);
+        let image = vector.map(|entry| (entry * eigenvalue).im);
+        blocks.push((block, vec![image + &second * (-2.0 * eigenvalue.re), second]));
+    }
+    for pair in real.chunks(2) {
+        match pair {
+            [(one, first), (two, second)] => {
+                let block = Block::Pair { a0: one * two, a1: -(one + two) };
+                // Of one on both: a real mode each.
+                let lower = (second - first) / (two - one);
+                let upper = (first * *two - second * *one) / (two - one);
+                blocks.push((block, vec![upper, lower]));
+            }
+            [(pole, vector)] => blocks.push((Block::Single(*pole), vec![vector.clone()])),
+            _ => {}
+        }
+    }
+    Some(blocks)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::dmatrix;
 
     fn model() -> StateSpace {
         StateSpace::new(

@@ -1,7 +1,6 @@
 //! What the engineer should know of an identified model, and what can be done about it (M14, section 10).
 
 use super::*;
-use nalgebra::DMatrix;
 
 /// Something that speaks against the model or a part of it, with what an action against it needs.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -149,18 +148,12 @@ pub enum IdentificationCaution {
         /// The same where the model may move within its own uncertainty.
         normalised: f64,
     },
-    /// The records weigh differently because their turbulence does.
-    #[error("the records are unlike in noise (by {ratio:.1}): they were weighed accordingly")]
-    Reweighed {
-        /// Greatest over least cost per degree of freedom before.
-        ratio: f64,
-    },
+    /// The records weigh differently because their turbulence does: the greatest over the least cost per degree of freedom before.
+    #[error("the records are unlike in noise (by {0:.1}): they were weighed accordingly")]
+    Reweighed(f64),
     /// The held-out records cannot be compared with the model in time.
-    #[error("the model was not compared with the held-out records in time: {why}")]
-    NotValidated {
-        /// Why.
-        why: ValidationError,
-    },
+    #[error("the model was not compared with the held-out records in time: {0}")]
+    NotValidated(ValidationError),
     /// An unstable pole that no line shows.
     #[error(
         "the model has an unstable pole of {:.0} rad/s, above the lines used (to {highest:.0} rad/s): it is no finding, and the model \
@@ -174,11 +167,8 @@ pub enum IdentificationCaution {
         highest: f64,
     },
     /// Responses that are not identified.
-    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(pairs))]
-    PairsNotIdentified {
-        /// Output and input of each.
-        pairs: Vec<[Signal; 2]>,
-    },
+    #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
+    PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
@@ -195,7 +185,7 @@ impl IdentificationCaution {
             |of: &ContradictingRecord| matches!(of.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0);
         match other {
             Self::UnlikeRecord { record, .. } => records.iter().any(|of| of.record == *record),
-            Self::Reweighed { .. } => true,
+            Self::Reweighed(_) => true,
             Self::NotSwept { .. } => records.iter().any(is_turned),
             _ => false,
         }
@@ -252,231 +242,124 @@ pub(crate) fn late_or_early(delay_s: f64) -> &'static str {
     if delay_s < 0.0 { "early" } else { "late" }
 }
 
-// What the engineer should know of the flight records.
+// What a caution is about, for files and for marks: its code, record, channel, pair and band.
 
-/// A channel with more equal consecutive samples than this while it moves is a stair (M14, 1.3).
-const HELD: f64 = 0.5;
-/// Equal samples for longer than this are a channel that does not move, and no stair \[s\].
-const STANDING_S: f64 = 1.0;
-/// With fewer samples than this in motion nothing is said about stairs.
-const SAMPLES_IN_MOTION: usize = 50;
-/// Two inputs with a correlation beyond this are moved together.
-const TOGETHER: f64 = 0.99;
-/// An output with a correlation to an input beyond this is a copy of it, and so is an output of another output.
-const COPY: f64 = 0.9999;
-
-/// Something in the flight records that may spoil the identification, or that was done to them.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum RecordCaution {
-    /// A record with uneven sample times was interpolated, as allowed.
-    #[error("{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps")]
-    Resampled {
-        /// The record's name.
-        record: String,
-        /// 95th percentile of the deviation from multiples of the sample time \[%\].
-        percent: f64,
-    },
-    /// What is left between two gaps is too short.
-    #[error("{record}: {length_s:.1} s from {start_s:.2} s were left out, too short between gaps")]
-    SegmentDropped {
-        /// The record's name.
-        record: String,
-        /// Where it begins \[s\].
-        start_s: f64,
-        /// Its length \[s\].
-        length_s: f64,
-    },
-    /// Nothing of a record is used.
-    #[error("{record}: nothing of it could be used")]
-    RecordUnused {
-        /// The record's name.
-        record: String,
-    },
-    /// Most consecutive samples of a channel in motion are equal.
-    #[error(
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. Say which it is: {}or stairs that \
-                 are right as they are (nothing done, as now)",
-        1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
-    )]
-    SampleHold {
-        /// The channel.
-        signal: Signal,
-        /// Share of equal samples \[%\].
-        percent: f64,
-        /// Median time from one change to the next \[s\].
-        hold_s: f64,
-    },
-    /// A value that cannot be right in the channel's unit.
-    #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
-    UnlikelyUnit {
-        /// The channel.
-        signal: Signal,
-        /// Its greatest modulus.
-        greatest: f64,
-        /// The greatest that is right.
-        limit: f64,
-    },
-    /// Two inputs always move together.
-    #[error(
-        "{} always moved together (correlation {correlation:.3}): their effects cannot be told apart",
-        names(signals)
-    )]
-    MovedTogether {
-        /// The inputs.
-        signals: [Signal; 2],
-        /// Their correlation.
-        correlation: f64,
-    },
-    /// An output stands at its limit.
-    #[error(
-        "{signal} is at its limit for {percent:.1} % of {record}{}: nothing repairs that. Leave the output out, or {}",
-        if *records > 1 { format!(", and in {} other records", records - 1) } else { String::new() },
-        if *records > 1 { "these records" } else { "the record" }
-    )]
-    AtLimit {
-        /// Name of the record in which it is most.
-        record: String,
-        /// The output.
-        signal: Signal,
-        /// Share of the samples \[%\].
-        percent: f64,
-        /// Records in which it is too much.
-        records: usize,
-    },
-    /// Outputs stood still while others moved.
-    #[error(
-        "{record}: {} stood still for {seconds:.1} s while other channels moved; that was left out",
-        names(signals)
-    )]
-    Stuck {
-        /// The record's name.
-        record: String,
-        /// The outputs.
-        signals: Vec<Signal>,
-        /// For how long in all \[s\].
-        seconds: f64,
-    },
-    /// An output is logged in coarse steps.
-    #[error(
-        "{signal} is logged in steps of {steps:.1} standard deviations: coarse, though no harm was ever measured of that"
-    )]
-    Coarse {
-        /// The output.
-        signal: Signal,
-        /// Step over the standard deviation.
-        steps: f64,
-    },
-    /// An output is a copy of another channel.
-    #[error(
-        "{copy} is a copy of the {} {of}: leave it out", of.role
-    )]
-    Copy {
-        /// The output.
-        copy: Signal,
-        /// The channel that it copies.
-        of: Signal,
-    },
+/// A caution as it stands in files.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CautionNote {
+    /// What kind it is, in one word for programs.
+    pub code: &'static str,
+    /// The names of the records that it is about; none where it is about all.
+    pub records: Vec<String>,
+    /// The channel's name, where it is about one.
+    pub channel: Option<String>,
+    /// Output and input, where it is about a response.
+    pub pair: Option<[String; 2]>,
+    /// Where in frequency it holds \[rad/s\].
+    pub band_rad_s: Option<[f64; 2]>,
+    /// In words.
+    pub text: String,
 }
 
-/// What the steps in a channel may be, by whether it is an input.
-fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
-    let half = 0.5 * hold_ms;
-    let command = format!("a command held and logged once a hold (moved {half:.0} ms later), ");
-    let command = if role == ChannelSide::Input { command } else { String::new() };
-    format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
-}
+impl CautionNote {
+    pub(super) fn of(code: &'static str) -> Self {
+        Self { code, ..Self::default() }
+    }
 
-/// The cautions about channels, from the records as logged and the segments made of them.
-pub(super) fn channel_cautions(
-    records: &[FlightRecord],
-    segments: &[Segment],
-    preparation: &Preparation,
-) -> Vec<RecordCaution> {
-    let mut cautions = Vec::new();
-    for (signal, channel) in preparation.channels() {
-        let of_record = |record| samples(record, &signal);
-        let greatest = segments.iter().map(|segment| segment.channel(&signal).amax()).fold(0.0, f64::max);
-        if let Some(limit) = channel.limit.filter(|limit| greatest > *limit) {
-            cautions.push(RecordCaution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
-        }
-        // Stairs of an output in coarse steps are those steps.
-        let all = || records.iter().flat_map(|record| finite(record, &signal)).collect::<Vec<f64>>();
-        if channel.hold == Hold::None
-            && (signal.role == ChannelSide::Input || !is_coarse(&all()))
-            && let Some((share, hold_s)) = sample_hold(records.iter().map(of_record))
-        {
-            cautions.push(RecordCaution::SampleHold { signal, percent: 100.0 * share, hold_s });
+    pub(super) fn record(self, name: &str) -> Self {
+        Self { records: vec![name.to_owned()], ..self }
+    }
+
+    pub(super) fn channel<'s>(self, signal: impl Into<Option<&'s Signal>>) -> Self {
+        Self { channel: signal.into().map(|signal| signal.name.clone()), ..self }
+    }
+
+    fn pair(self, channels: [&Signal; 2]) -> Self {
+        Self { pair: Some(channels.map(|signal| signal.name.clone())), ..self }
+    }
+
+    fn band(self, ends: [f64; 2]) -> Self {
+        Self { band_rad_s: Some(ends), ..self }
+    }
+
+    /// What it says in three words or fewer, for a mark.
+    #[must_use]
+    pub fn mark(&self) -> &'static str {
+        match self.code {
+            "clipped" => "at its limit",
+            "stuck" => "stood still",
+            "coarse" => "coarse steps",
+            "held" => "steps",
+            "copy" => "a copy",
+            "sign" => "other sign",
+            "time-skew" => "time skew",
+            "vibration" => "vibrates",
+            "unit" => "unit in doubt",
+            "inadequate" => "poorly fitted",
+            "not-swept" => "not swept",
+            "collinear-inputs" => "not moved alone",
+            "points" => "leaves the points",
+            "not-identified" => "not identified",
+            "feedback" | "feedback-some" => "gusts fed back",
+            "record" => "contradicts",
+            "gap" => "gaps",
+            "duplicate" => "a duplicate",
+            "resampled" => "resampled",
+            "held-out" => "not predicted",
+            "unstable" => "unstable, above the lines",
+            "order-limit" => "order too low",
+            "band-narrowed" => "shows nothing",
+            "short" => "short records",
+            _ => "see the caution",
         }
     }
-    cautions.extend(output_cautions(records, preparation));
-    cautions.extend(correlated(segments, preparation));
-    cautions
 }
 
-/// The outputs that were stuck in a record, by its gaps.
-pub(super) fn stuck_caution(used: &RecordUse) -> Option<RecordCaution> {
-    let frozen = used.gaps.iter().filter_map(|gap| match &gap.cause {
-        Cause::Frozen { signals } => Some((signals, gap.end_s - gap.start_s)),
-        _ => None,
-    });
-    let (mut all, mut seconds) = (std::collections::BTreeSet::new(), 0.0);
-    for (signals, length_s) in frozen {
-        all.extend(signals.iter().cloned());
-        seconds += length_s;
-    }
-    let signals: Vec<Signal> = all.into_iter().collect();
-    (!signals.is_empty()).then(|| RecordCaution::Stuck { record: used.record.clone(), signals, seconds })
-}
-
-/// Stamps and values of a channel in `record` where both are there.
-fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
-    let column = record.channel(signal);
-    let stamped = record.time_s.iter().copied().zip(column.iter().copied());
-    stamped.filter(|(time, value)| time.is_finite() && value.is_finite()).collect()
-}
-
-/// Share of equal consecutive samples in a channel while it moves, and the median time between changes \[s\]; none where
-/// the share is a half or less.
-fn sample_hold(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> {
-    let (mut samples, mut steps) = (0, Vec::new());
-    for record in records {
-        let runs: Vec<_> = record.chunk_by(|a, b| a.1 == b.1).collect();
-        for pair in runs.windows(2) {
-            let held_s = pair[1][0].0 - pair[0][0].0;
-            if held_s <= STANDING_S {
-                samples += pair[0].len();
-                steps.push(held_s);
+impl IdentificationCaution {
+    /// The caution with what it is about.
+    #[must_use]
+    pub fn note(&self) -> CautionNote {
+        let of = CautionNote::of;
+        let note = match self {
+            Self::Records(caution) => caution.note(),
+            Self::Short { lowest, periods, .. } => of("short").band([*lowest, lowest * (5.0 / periods).max(1.0)]),
+            Self::NotSwept { signal, .. } => of("not-swept").channel(signal),
+            Self::MovedTogether { .. } => of("collinear-inputs"),
+            Self::BandNotShown { shown, .. } => of("band-narrowed").band(*shown),
+            Self::Vibration { signal, .. } => of("vibration").channel(signal),
+            Self::Inadequate { record, signal, .. } => of("inadequate").record(record).channel(signal),
+            Self::UnlikeRecord { name, .. } => of("record").record(name),
+            Self::Contradiction { records, .. } => {
+                let (code, channel) = common_fault(records);
+                let records = records.iter().map(|of| of.name.clone()).collect();
+                CautionNote { records, ..of(code).channel(channel) }
             }
-        }
+            Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
+            Self::Feedback { .. } => of("feedback-some"),
+            Self::LeavesPoints { output, input, band, .. } => of("points").pair([output, input]).band(*band),
+            Self::OrderLimit { narrower, .. } => of("order-limit").band(*narrower),
+            Self::HeldOut { records, .. } => CautionNote { records: records.clone(), ..of("held-out") },
+            Self::Reweighed(_) => of("reweighed"),
+            Self::NotValidated(_) => of("not-validated"),
+            Self::Unstable { .. } => of("unstable"),
+            Self::PairsNotIdentified(pairs) => match pairs.as_slice() {
+                [[output, input]] => of("not-identified").pair([output, input]),
+                _ => of("not-identified"),
+            },
+        };
+        CautionNote { text: self.to_string(), ..note }
     }
-    let share = 1.0 - steps.len() as f64 / samples.max(1) as f64;
-    (samples >= SAMPLES_IN_MOTION && share > HELD).then(|| (share, median(&mut steps)))
 }
 
-/// Channels that move together, by their correlation over all segments.
-fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaution> {
-    let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
-    let mut covariance = DMatrix::zeros(signals.len(), signals.len());
-    for segment in segments {
-        let samples: Vec<_> = signals.iter().map(|signal| segment.channel(signal)).collect();
-        let centred = centred(DMatrix::from_columns(&samples));
-        covariance += centred.tr_mul(&centred);
-    }
-    let mut cautions = Vec::new();
-    for (second, b) in signals.iter().enumerate() {
-        for (first, a) in signals.iter().enumerate().take(second) {
-            let power = (covariance[(first, first)] * covariance[(second, second)]).sqrt();
-            let correlation: f64 = covariance[(first, second)] / power;
-            match b.role {
-                ChannelSide::Input if correlation.abs() > TOGETHER => {
-                    cautions.push(RecordCaution::MovedTogether { signals: [a.clone(), b.clone()], correlation });
-                }
-                ChannelSide::Output if correlation.abs() > COPY => {
-                    cautions.push(RecordCaution::Copy { copy: b.clone(), of: a.clone() })
-                }
-                ChannelSide::Input | ChannelSide::Output => {}
-            }
-        }
-    }
-    cautions
+/// What is wrong in one word, and with which channel, as far as that is the same whichever of the records is the wrong one.
+fn common_fault(records: &[ContradictingRecord]) -> (&'static str, Option<&Signal>) {
+    let of = |record: &ContradictingRecord| match &record.fault {
+        Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
+        Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
+        _ => "record",
+    };
+    let mut signals = records.iter().map(|record| record.fault.as_ref().and_then(RecordFault::signal));
+    let code = records.first().map(of).filter(|code| records.iter().all(|record| of(record) == *code));
+    let first = signals.next().flatten();
+    (code.unwrap_or("record"), first.filter(|_| signals.all(|signal| signal == first)))
 }

@@ -13,8 +13,6 @@
 //! With feedback the inputs hold what gusts did to the outputs, and the cost stays at 1 however wrong the model is.
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Samples of the predictor over the time in which the upper end of the band turns by one radian.
 const STEP: f64 = 0.25;
@@ -181,9 +179,8 @@ impl Predictor {
         let outputs_now: Vec<usize> = (inputs..channels).collect();
         let mut normal = gram.select_rows(&regressors).select_columns(&regressors);
         let right = gram.select_rows(&regressors).select_columns(&outputs_now);
-        let scales = normal.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
+        let scales = scale_columns(&mut normal);
         let size = scales.len();
-        normal.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % size] * scales[at / size]);
         (0..size).for_each(|k| normal[(k, k)] += if scales[k] > 0.0 { RIDGE } else { 1.0 });
         let scaled = DMatrix::from_fn(size, outputs, |row, column| right[(row, column)] * scales[row]);
         let mut coefficients = normal.cholesky()?.solve(&scaled);

@@ -1,8 +1,6 @@
 //! A flight record as it was logged, and the segments of it that identification uses.
 
 use super::*;
-use nalgebra::{DMatrix, DVectorView};
-use std::fmt;
 
 /// A flight record: samples of every input and output at stamped times, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,20 +33,14 @@ pub struct Segment {
 impl FlightRecord {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        match signal.role {
-            ChannelSide::Input => self.inputs.column(signal.index),
-            ChannelSide::Output => self.outputs.column(signal.index),
-        }
+        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
     }
 }
 
 impl Segment {
     /// The samples of a channel.
     pub(super) fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        match signal.role {
-            ChannelSide::Input => self.inputs.column(signal.index),
-            ChannelSide::Output => self.outputs.column(signal.index),
-        }
+        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
     }
 }
 
@@ -104,15 +96,9 @@ pub enum Cause {
     /// Time jumps from one row to the next.
     RowsMissing,
     /// Channels have no value.
-    SamplesMissing {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    SamplesMissing(Vec<Signal>),
     /// Outputs stood still while others moved.
-    Frozen {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    Frozen(Vec<Signal>),
     /// What is left between two gaps is shorter than the least segment.
     SegmentTooShort {
         /// Its length \[s\].
@@ -155,8 +141,8 @@ impl fmt::Display for Gap {
         match &self.cause {
             Cause::StampsMissing => f.write_str("time stamps missing")?,
             Cause::RowsMissing => f.write_str("rows missing")?,
-            Cause::SamplesMissing { signals } => write!(f, "{} missing", names(signals))?,
-            Cause::Frozen { signals } => write!(f, "{} frozen", names(signals))?,
+            Cause::SamplesMissing(signals) => write!(f, "{} missing", names(signals))?,
+            Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
             Cause::SegmentTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
         }
         f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })

@@ -13,9 +13,6 @@
 //! far below 1 and says nothing.
 
 use super::*;
-use crate::dataset::{ModelBands, PairTable};
-use crate::executor::Executor;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Half width of a window over its centre.
 const HALF_WIDTH: f64 = 0.15;
@@ -29,7 +26,6 @@ const LEAST_COHERENCE: f64 = 0.01;
 
 /// What the reference shows of inputs and outputs at one frequency.
 struct InstrumentPoint {
-    omega: f64,
     /// `Gamma0`, outputs then inputs x references.
     gamma: DMatrix<Complex<f64>>,
     /// `S`, references x references.
@@ -91,12 +87,12 @@ impl InstrumentPoint {
             power: DVector::from_fn(outputs, |o, _| fit.power()[o]),
             coherence: DVector::from_fn(outputs, |o, _| coherence[o]),
             partial_coherence: DMatrix::from_fn(outputs, inputs, |_, i| coherence[outputs + i]),
-            condition: condition(&of_inputs),
+            condition: condition(of_inputs),
             half_width: fit.half_width(),
             freedom: fit.freedom,
             response,
         };
-        Self { omega: estimate.omega, gamma, spread, estimate }
+        Self { gamma, spread, estimate }
     }
 }
 
@@ -104,14 +100,12 @@ impl ResponseEstimate {
     /// Bands of what was logged, over the root of the coherence of each input with the reference: what the reference does not show
     /// is known the less (M14.15).
     pub(super) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
+        let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
         let widened = |table: &PairTable<Vec<f64>>| {
             PairTable::from_fn(table.outputs(), table.inputs(), |pair| {
                 let coherence = |omega: f64| {
-                    let after = self.points.partition_point(|point| point.omega <= omega).min(self.points.len() - 1);
-                    let before = after.saturating_sub(1);
+                    let (before, after, share) = between(&omegas, omega);
                     let at = |index: usize| self.points[index].partial_coherence[(pair.output, pair.input)];
-                    let (from, to) = (self.points[before].omega, self.points[after].omega);
-                    let share = if to > from { ((omega - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
                     (1.0 - share) * at(before) + share * at(after)
                 };
                 let sds = table[pair].iter().zip(bands.omega());
@@ -125,11 +119,10 @@ impl ResponseEstimate {
 /// The lines as the reference shows them, less those that it determines by themselves.
 fn seen(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
     let (mut omega, mut all) = (Vec::new(), Vec::new());
+    let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();
     for (k, &at) in lines.omega.iter().enumerate() {
-        let after = points.partition_point(|point| point.omega <= at).min(points.len() - 1);
-        let before = after.saturating_sub(1);
+        let (before, after, share) = between(&omegas, at);
         let (one, other) = (&points[before], &points[after]);
-        let share = if after == before { 0.0 } else { ((at - one.omega) / (other.omega - one.omega)).clamp(0.0, 1.0) };
         let reference = lines.inputs.column(k);
         let leverage =
             |point: &InstrumentPoint| (reference.transpose() * &point.spread * reference.map(|r| r.conj()))[0].re;
@@ -151,10 +144,4 @@ fn pseudo_inverse(matrix: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else { return none() };
     let least = TOLERANCE * svd.singular_values.max();
     svd.pseudo_inverse(least.max(f64::MIN_POSITIVE)).unwrap_or_else(|_| none())
-}
-
-/// Square of the greatest singular value over the least.
-fn condition(matrix: &DMatrix<Complex<f64>>) -> f64 {
-    let singular = matrix.clone().singular_values();
-    (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2)
 }

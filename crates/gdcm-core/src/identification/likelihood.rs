@@ -14,8 +14,6 @@
 //! model is adequate, because W makes the noise white with real and imaginary parts of variance one.
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
 pub(super) const DEPENDENT: f64 = 1e-12;
@@ -64,8 +62,7 @@ impl SpectralLines {
         let (mut constant, mut drift) =
             (DMatrix::zeros(outputs * lines, outputs), DMatrix::zeros(outputs * lines, outputs));
         for (k, weight) in weights.iter().enumerate() {
-            let white = NoiseCovariance::whitened(weight, spectrum.outputs.column(k).as_slice());
-            whitened.column_mut(k).copy_from_slice(&white);
+            whiten(weight, spectrum.outputs.column(k).as_slice(), |o, value| whitened[(o, k)] = value);
             constant.rows_mut(k * outputs, outputs).copy_from(weight);
             drift.rows_mut(k * outputs, outputs).copy_from(&(weight / spectrum.omega[k]));
         }
@@ -75,8 +72,8 @@ impl SpectralLines {
             inputs: spectrum.inputs.clone(),
             outputs: whitened,
             weights,
-            constant: orthonormal(constant),
-            drift: orthonormal(drift),
+            constant: constant.qr().q(),
+            drift: drift.qr().q(),
         }
     }
 
@@ -95,35 +92,18 @@ impl SpectralLines {
 
     /// This segment's part of the cost; none where it is not finite.
     pub(super) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
-        let (outputs, lines) = self.outputs.shape();
-        let order = model.order();
-        // Real and imaginary parts of [T e0], one row for each output of each line.
-        let (mut real, mut imaginary) =
-            (DMatrix::zeros(outputs * lines, order + 1), DMatrix::zeros(outputs * lines, order + 1));
-        let mut cr = vec![Complex::default(); outputs * order];
-        let mut state = vec![Complex::default(); order];
+        let outputs = self.outputs.nrows();
+        let mut state = vec![Complex::default(); model.order()];
         let mut output = vec![Complex::default(); outputs];
-        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
-            model.output_resolvent(omega, &mut cr);
+        self.eliminated(model, |k, cr, e0| {
             let input = self.inputs.column(k);
             multiply(&model.b, input.as_slice(), &mut state);
             multiply(&model.d, input.as_slice(), &mut output);
             for (column, x) in cr.chunks_exact(outputs).zip(&state) {
                 column.iter().zip(&mut output).for_each(|(c, y)| *y += c * x);
             }
-            let row = k * outputs;
-            for (column, values) in cr.chunks_exact(outputs).chain([&output[..]]).enumerate() {
-                whiten(weight, values, |o, value| {
-                    real[(row + o, column)] = value.re;
-                    imaginary[(row + o, column)] = value.im;
-                });
-            }
-            for (o, y) in self.outputs.column(k).iter().enumerate() {
-                real[(row + o, order)] = y.re - real[(row + o, order)];
-                imaginary[(row + o, order)] = y.im - imaginary[(row + o, order)];
-            }
-        }
-        self.eliminated(real, imaginary)
+            whiten(&self.weights[k], &output, |o, value| e0[o] = self.outputs[(o, k)] - value);
+        })
     }
 
     /// A whitened column, outputs x lines, without what the transient of `model` and drifts make of it; none where that is not finite.
@@ -132,29 +112,36 @@ impl SpectralLines {
         model: &BlockModel,
         column: &DMatrix<Complex<f64>>,
     ) -> Option<DMatrix<Complex<f64>>> {
-        let (outputs, order) = (self.outputs.nrows(), model.order());
-        let mut real = DMatrix::zeros(column.len(), order + 1);
-        let mut imaginary = real.clone();
-        let mut cr = vec![Complex::default(); outputs * order];
-        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
-            model.output_resolvent(omega, &mut cr);
-            for (state, values) in cr.chunks_exact(outputs).enumerate() {
-                whiten(weight, values, |o, value| {
-                    real[(k * outputs + o, state)] = value.re;
-                    imaginary[(k * outputs + o, state)] = value.im;
-                });
-            }
-        }
-        for (row, value) in column.iter().enumerate() {
-            (real[(row, order)], imaginary[(row, order)]) = (value.re, value.im);
-        }
-        Some(self.eliminated(real, imaginary)?.residual)
+        let left = self.eliminated(model, |k, _, e0| e0.copy_from_slice(column.column(k).as_slice()))?;
+        Some(left.residual)
     }
 
-    /// What is left of the last column when drifts and the columns before it, the transient's, are eliminated.
-    fn eliminated(&self, mut real: DMatrix<f64>, mut imaginary: DMatrix<f64>) -> Option<SegmentCost> {
+    /// What is left of `e0` when drifts and the transient of `model` are eliminated. `fill` is given the number of a line and
+    /// `C (j omega - A)^-1` there, and puts `e0` of that line into the last.
+    fn eliminated(
+        &self,
+        model: &BlockModel,
+        mut fill: impl FnMut(usize, &[Complex<f64>], &mut [Complex<f64>]),
+    ) -> Option<SegmentCost> {
         let (outputs, lines) = self.outputs.shape();
-        let order = real.ncols() - 1;
+        let order = model.order();
+        // Real and imaginary parts of [T e0], one row for each output of each line.
+        let (mut real, mut imaginary) =
+            (DMatrix::zeros(outputs * lines, order + 1), DMatrix::zeros(outputs * lines, order + 1));
+        let mut cr = vec![Complex::default(); outputs * order];
+        let mut e0 = vec![Complex::default(); outputs];
+        for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
+            model.output_resolvent(omega, &mut cr);
+            fill(k, &cr, &mut e0);
+            let mut put = |o: usize, column: usize, value: Complex<f64>| {
+                real[(k * outputs + o, column)] = value.re;
+                imaginary[(k * outputs + o, column)] = value.im;
+            };
+            for (state, values) in cr.chunks_exact(outputs).enumerate() {
+                whiten(weight, values, |o, value| put(o, state, value));
+            }
+            e0.iter().enumerate().for_each(|(o, value)| put(o, order, *value));
+        }
         project_out(&self.constant, &mut real);
         project_out(&self.drift, &mut imaginary);
         let mut gram = real.transpose() * &real;
@@ -204,6 +191,13 @@ impl Likelihood<'_> {
         records
     }
 
+    /// The sum of the systems of the segments of one record, where `systems` are those of all segments.
+    pub(super) fn system_of(&self, record: usize, systems: &[NormalSystem]) -> NormalSystem {
+        let parameters = systems.first().map_or(0, |system| system.gradient.len());
+        let of_segments = self.segments.iter().zip(systems).filter(|(segment, _)| segment.record == record);
+        NormalSystem::sum(parameters, of_segments.map(|(_, system)| system))
+    }
+
     /// The segments of all records but one.
     pub(super) fn without(&self, record: usize) -> Self {
         let segments = self.segments.iter().filter(|segment| segment.record != record).cloned().collect();
@@ -230,22 +224,24 @@ pub(super) fn whiten(weight: &DMatrix<f64>, x: &[Complex<f64>], mut take: impl F
     }
 }
 
-/// An orthonormal basis of the columns.
-fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
-    columns.qr().q()
-}
-
 /// Takes off every column its projection on an orthonormal basis.
 fn project_out(basis: &DMatrix<f64>, columns: &mut DMatrix<f64>) {
     let products = basis.transpose() * &*columns;
     columns.gemm(-1.0, basis, &products, 1.0);
 }
 
+/// Scales the columns that a Gram matrix is of to length one, and gives the factors; 0 is that of a column of zeros.
+pub(super) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
+    let scales = gram.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
+    let size = scales.len();
+    gram.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % size] * scales[at / size]);
+    scales
+}
+
 /// `F` with `F F' = G^+` for a Gram matrix `G`, by the eigenvectors of its scaled columns: those whose eigenvalue is at most
 /// `dependent` times the greatest are left out. None where an iteration does not end.
 pub(super) fn pseudo_inverse_root(mut gram: DMatrix<f64>, dependent: f64) -> Option<DMatrix<f64>> {
-    let scales = gram.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
-    gram.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % scales.len()] * scales[at / scales.len()]);
+    let scales = scale_columns(&mut gram);
     if !gram.iter().all(|entry| entry.is_finite()) {
         return None;
     }

@@ -1,9 +1,6 @@
 //! Identified models from flight records (M14).
 mod blocks;
-mod candidate;
-mod caution_subject;
 mod cautions;
-mod channel_check;
 mod diagnostics;
 mod feedback;
 mod flight_record;
@@ -16,42 +13,44 @@ mod known_answers_tests;
 mod laguerre;
 mod likelihood;
 mod local_polynomial;
-mod modal_form;
 mod mode_removal;
 mod normal_system;
-mod options;
 mod order;
-mod point_check;
 mod preparation;
 mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
+mod record_cautions;
 mod record_contrast;
 mod refinement;
-mod response_estimate;
 mod sampling;
 mod spectrum;
 mod subspace;
 mod topics;
-mod triangular_factor;
 mod uncertainty;
 mod validation;
 
-use crate::dataset::{ChannelSide, Pair, StateSpace};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use nalgebra::{Complex, DMatrix, DMatrixView, DVector, DVectorView, dmatrix};
+
+use crate::dataset::{ChannelRemedy, ChannelSide, ModelBands, Pair, PairTable, StateSpace};
+use crate::executor::{Executor, each};
 #[cfg(test)]
 use crate::progress::Unobserved;
 use crate::progress::{Cancelled, Progress, Shares};
 pub use crate::response::log_spaced;
-use crate::response::{median, quantile};
+use crate::response::{SchurForm, median, quantile};
 
 #[cfg(test)]
 use self::known_answers_tests::*;
 use self::{
-    blocks::*, channel_check::*, instrument::*, laguerre::*, likelihood::*, modal_form::*, normal_system::*, order::*,
-    refinement::*, sampling::*, subspace::*, triangular_factor::*,
+    blocks::*, instrument::*, laguerre::*, likelihood::*, mode_removal::*, normal_system::*, order::*, refinement::*,
+    sampling::*,
 };
 pub use self::{
-    candidate::*, caution_subject::*, cautions::*, diagnostics::*, feedback::*, flight_record::*, identify::*,
-    local_polynomial::*, options::*, point_check::*, preparation::*, prepared_data::*, record_contrast::*,
-    response_estimate::*, spectrum::*, topics::*, uncertainty::*, validation::*,
+    cautions::*, diagnostics::*, feedback::*, flight_record::*, identify::*, local_polynomial::*, preparation::*,
+    prepared_data::*, record_cautions::*, record_contrast::*, spectrum::*, subspace::*, topics::*, uncertainty::*,
+    validation::*,
 };

@@ -7,7 +7,6 @@
 //! ```
 
 use super::*;
-use nalgebra::{Complex, DMatrix, dmatrix};
 
 impl BlockModel {
     /// The model without the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses least; none where it has no
@@ -15,26 +14,35 @@ impl BlockModel {
     pub(super) fn without_least_mode(&self, size: usize, measured: &ResponseEstimate) -> Option<Self> {
         let modes = self.modes();
         let losses = modes.iter().enumerate().filter(|(_, mode)| mode.order() == size);
-        let losses = losses.map(|(at, mode)| (at, Loss::of(mode, measured)));
-        let (at, loss) = losses.min_by(|a, b| a.1.weighed.total_cmp(&b.1.weighed))?;
+        let losses = losses.map(|(at, mode)| (at, mode.loss(measured)));
+        let (at, (_, mean)) = losses.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
         let kept: Vec<&Self> =
             modes.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, mode)| mode).collect();
-        let order = self.order() - size;
-        let (inputs, outputs) = (self.b.ncols(), self.c.nrows());
-        let mut joined = Self {
-            blocks: kept.iter().flat_map(|mode| mode.blocks.iter().copied()).collect(),
-            b: DMatrix::zeros(order, inputs),
-            c: DMatrix::zeros(outputs, order),
-            d: &self.d + loss.mean,
-        };
-        let mut first = 0;
-        for mode in kept {
-            joined.b.rows_mut(first, mode.order()).copy_from(&mode.b);
-            joined.c.columns_mut(first, mode.order()).copy_from(&mode.c);
-            first += mode.order();
+        if kept.is_empty() {
+            return None;
         }
+        let rows: Vec<_> = kept.iter().flat_map(|mode| mode.b.row_iter()).collect();
+        let columns: Vec<_> = kept.iter().flat_map(|mode| mode.c.column_iter()).collect();
+        let joined = Self {
+            blocks: kept.iter().flat_map(|mode| mode.blocks.iter().copied()).collect(),
+            b: DMatrix::from_rows(&rows),
+            c: DMatrix::from_columns(&columns),
+            d: &self.d + mean,
+        };
         // Pairs real poles again.
         Self::of(&joined.state_space()?)
+    }
+
+    /// What is lost with this mode, `sum |dH - mean dH|^2 / var G`, and the mean of its real part over frequency, which stays in `D`.
+    fn loss(&self, measured: &ResponseEstimate) -> (f64, DMatrix<f64>) {
+        let lost: Vec<_> = measured.points.iter().map(|point| self.response(point.omega)).collect();
+        let mut mean = self.d.clone();
+        lost.iter().for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
+        let at_point = |(lost, point): (&DMatrix<Complex<f64>>, &EstimatePoint)| {
+            let left = lost.zip_map(&mean, |lost, mean| (lost - mean).norm_sqr());
+            left.zip_map(&point.variance, |left, variance| left / variance.max(f64::MIN_POSITIVE)).sum()
+        };
+        (lost.iter().zip(&measured.points).map(at_point).sum(), mean)
     }
 
     /// Each mode as a model without `D`: a complex pair, or a real pole.
@@ -64,32 +72,119 @@ impl BlockModel {
     }
 }
 
-/// What the model loses with a mode.
-struct Loss {
-    /// Mean of the real part over frequency, which stays in `D`.
-    mean: DMatrix<f64>,
-    /// `sum |dH - mean dH|^2 / var G`.
-    weighed: f64,
+// The Schur form reordered, and a model without its modes far above the band.
+
+impl SchurForm {
+    /// Exchanges neighbours until the eigenvalues that are `first` stand first; gives how many there are.
+    pub(super) fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
+        let mut placed = 0;
+        for at in 0..self.t.nrows() {
+            if first(self.t[(at, at)]) {
+                for upper in (placed..at).rev() {
+                    self.exchange(upper);
+                }
+                placed += 1;
+            }
+        }
+        placed
+    }
+
+    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and columns.
+    fn exchange(&mut self, upper: usize) {
+        let lower = upper + 1;
+        let (first, second) = (self.t[(upper, upper)], self.t[(lower, lower)]);
+        // The eigenvector of `second` in these two rows.
+        let (x, y) = (self.t[(upper, lower)], second - first);
+        let norm = x.norm().hypot(y.norm());
+        if norm == 0.0 {
+            return;
+        }
+        let (c, s) = (x / norm, y / norm);
+        for matrix in [&mut self.t, &mut self.q] {
+            for row in 0..matrix.nrows() {
+                let (left, right) = (matrix[(row, upper)], matrix[(row, lower)]);
+                matrix[(row, upper)] = left * c + right * s;
+                matrix[(row, lower)] = right * c.conj() - left * s.conj();
+            }
+        }
+        for column in 0..self.t.ncols() {
+            let (above, below) = (self.t[(upper, column)], self.t[(lower, column)]);
+            self.t[(upper, column)] = above * c.conj() + below * s.conj();
+            self.t[(lower, column)] = below * c - above * s;
+        }
+        self.t[(lower, upper)] = Complex::new(0.0, 0.0);
+        (self.t[(upper, upper)], self.t[(lower, lower)]) = (second, first);
+    }
 }
 
-impl Loss {
-    fn of(mode: &BlockModel, measured: &ResponseEstimate) -> Self {
-        let lost: Vec<_> = measured.points.iter().map(|point| mode.response(point.omega)).collect();
-        let mut mean = mode.d.clone();
-        lost.iter().for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
-        let at_point = |(lost, point): (&DMatrix<Complex<f64>>, &EstimatePoint)| {
-            let left = lost.zip_map(&mean, |lost, mean| (lost - mean).norm_sqr());
-            left.zip_map(&point.variance, |left, variance| left / variance.max(f64::MIN_POSITIVE)).sum()
-        };
-        let weighed = lost.iter().zip(&measured.points).map(at_point).sum();
-        Self { mean, weighed }
+// A model without its modes far above the band, their static part kept.
+//
+// ```text
+// 1  A = Q T Q^H, T upper triangular; neighbours on its diagonal are exchanged until the slow ones stand first
+// 2  Q1 an orthonormal real basis of what the first columns of Q span, Q2 of its complement
+// 3  [Q1 Q2]' A [Q1 Q2] = [A1 A12; 0 A2];  A1 X - X A2 = -A12 (Sylvester)
+// 4  slow: A1, B1 = Q1'B - X Q2'B, C1 = C Q1;   fast: A2, B2 = Q2'B, C2 = C (Q1 X + Q2)
+// 5  D + C2 (-A2)^-1 B2
+// ```
+//
+// Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.
+
+/// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
+/// end, fast and slow modes cannot be told apart, or none is slow.
+pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
+    let (a, b, c, order) = (model.a(), model.b(), model.c(), model.order());
+    let mut schur = SchurForm::of(a)?;
+    let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
+    if slow == order {
+        return Some(model.clone());
     }
+    if slow == 0 {
+        return None;
+    }
+    let basis = real_basis(&schur.q, slow);
+    let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
+    let (a1, a2) = (q1.transpose() * a * q1, q2.transpose() * a * q2);
+    let x = sylvester(&a1, &a2, &(q1.transpose() * a * q2))?;
+    let b2 = q2.transpose() * b;
+    let c2 = c * (q1 * &x + q2);
+    let b1 = q1.transpose() * b - &x * &b2;
+    StateSpace::new(a1, b1, c * q1, model.d() - c2 * a2.lu().solve(&b2)?).ok()
+}
+
+/// An orthonormal basis whose first `count` columns span the same as the first `count` columns of `q`, which are conjugates of
+/// each other or real.
+fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
+    let order = q.nrows();
+    // The projector on the span is real, with the eigenvalues one and zero.
+    let leading = q.columns(0, count);
+    let projector = DMatrix::from_fn(order, order, |row, column| {
+        leading.row(row).iter().zip(leading.row(column).iter()).map(|(x, y)| (x * y.conj()).re).sum()
+    });
+    let eigen = nalgebra::SymmetricEigen::<f64, nalgebra::Dyn>::new(projector);
+    let mut by_size: Vec<usize> = (0..order).collect();
+    by_size.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
+    eigen.eigenvectors.select_columns(&by_size)
+}
+
+/// `X` of `A1 X - X A2 = -A12`.
+fn sylvester(a1: &DMatrix<f64>, a2: &DMatrix<f64>, a12: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let (rows, columns) = a12.shape();
+    let identity = |size| DMatrix::<f64>::identity(size, size);
+    let system = identity(columns).kronecker(a1) - a2.transpose().kronecker(&identity(rows));
+    let stacked = nalgebra::DVector::from_column_slice((-a12).as_slice());
+    Some(DMatrix::from_column_slice(rows, columns, system.lu().solve(&stacked)?.as_slice()))
+}
+
+/// The poles of a model, as the Schur iteration gives them; none where it does not end.
+pub(super) fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
+    let schur = nalgebra::Schur::try_new(model.a().clone(), f64::EPSILON, 100 * (model.order() + 1))?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::DVector;
+    use crate::identification::known_answers_tests::*;
 
     #[test]
     fn the_mode_that_is_missed_least_goes_and_its_mean_stays() {
@@ -126,5 +221,51 @@ mod tests {
         let last = less.without_least_mode(2, &measured).unwrap().without_least_mode(1, &measured).unwrap();
         assert_eq!(last.order(), 1);
         assert!(last.without_least_mode(1, &measured).is_none(), "no state would be left");
+    }
+
+    fn sample(size: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(size, size, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())
+    }
+
+    #[test]
+    fn a_model_of_fast_modes_alone_has_no_slow_part() {
+        let model = |pole: f64| {
+            StateSpace::new(sample(2).map(|_| 0.0) + DMatrix::identity(2, 2) * pole, sample(2), sample(2), sample(2))
+        };
+        assert!(without_fast_modes(&model(-100.0).unwrap(), 50.0).is_none());
+        assert_eq!(without_fast_modes(&model(-10.0).unwrap(), 50.0).unwrap().order(), 2);
+    }
+
+    #[test]
+    fn the_form_still_gives_the_matrix_after_its_reordering() {
+        let a = sample(9);
+        let mut form = SchurForm::of(&a).unwrap();
+        let before: Vec<_> = form.t.diagonal().iter().copied().collect();
+        let count = form.order_by(|eigenvalue| eigenvalue.re > 0.0);
+        assert_eq!(count, before.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count());
+        assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
+        // A few dozen rotations, each backward stable.
+        assert!((&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm());
+    }
+
+    #[test]
+    fn what_is_left_is_that_of_independent_code() {
+        let known = &answers()["drop_fast"];
+        let of = |name: &str| matrix(&known[name]);
+        let model = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
+        let slow = without_fast_modes(&model, number(&known["wmax"])).unwrap();
+        assert_eq!(slow.order() as f64, number(&known["order"]));
+        for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
+            // Independent numpy code; the tolerance stands in its file.
+            assert!((response_at(&slow, omega) - expected).camax() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_model_without_fast_modes_stays_as_it_is() {
+        let known = &answers()["drop_fast"];
+        let of = |name: &str| matrix(&known[name]);
+        let model = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
+        assert_eq!(without_fast_modes(&model, 1000.0).unwrap(), model);
     }
 }

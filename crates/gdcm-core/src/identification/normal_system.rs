@@ -13,8 +13,6 @@
 //! With tau in X the gradient is exact: variable projection in the form of Kaufman, BIT 15, 1975.
 
 use super::*;
-use crate::executor::each;
-use nalgebra::{Complex, DMatrix, DVector};
 
 /// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
@@ -26,15 +24,14 @@ pub(super) struct NormalSystem {
 }
 
 impl NormalSystem {
-    /// The system of nothing.
-    pub(super) fn zero(parameters: usize) -> Self {
-        Self { matrix: DMatrix::zeros(parameters, parameters), gradient: DVector::zeros(parameters) }
-    }
-
-    /// Adds another one.
-    pub(super) fn add(&mut self, other: &Self) {
-        self.matrix += &other.matrix;
-        self.gradient += &other.gradient;
+    /// The sum of some; `parameters` says how large it is where there are none.
+    pub(super) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
+        let mut sum = Self { matrix: DMatrix::zeros(parameters, parameters), gradient: DVector::zeros(parameters) };
+        for system in systems {
+            sum.matrix += &system.matrix;
+            sum.gradient += &system.gradient;
+        }
+        sum
     }
 
     /// Takes another one off.
@@ -44,11 +41,8 @@ impl NormalSystem {
 
     /// The step of Levenberg and Marquardt, `(G + lambda diag G) d = g`; none where it is not finite.
     pub(super) fn damped_step(&self, lambda: f64) -> Option<DVector<f64>> {
-        let diagonal = self.matrix.diagonal();
-        let scales = diagonal.map(|entry| if entry > 0.0 { 1.0 / entry.sqrt() } else { 0.0 });
         let mut scaled = self.matrix.clone();
-        let size = scales.len();
-        scaled.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % size] * scales[at / size]);
+        let scales = scale_columns(&mut scaled);
         for (k, scale) in scales.iter().enumerate() {
             scaled[(k, k)] = if *scale > 0.0 { 1.0 + lambda } else { 1.0 };
         }
@@ -370,8 +364,7 @@ mod tests {
 
     fn total(likelihood: &Likelihood, model: &BlockModel) -> (f64, NormalSystem) {
         let parts = likelihood.parts(model).unwrap();
-        let mut sum = NormalSystem::zero(model.parameters());
-        normal_systems(likelihood, model, &parts).unwrap().iter().for_each(|system| sum.add(system));
+        let sum = NormalSystem::sum(model.parameters(), &normal_systems(likelihood, model, &parts).unwrap());
         (parts.iter().map(|part| part.cost).sum(), sum)
     }
 

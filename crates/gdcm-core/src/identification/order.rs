@@ -13,8 +13,6 @@
 //! order within 3 % without one goes first.
 
 use super::*;
-use crate::executor::each;
-use std::collections::BTreeMap;
 
 /// The highest order at which the search begins.
 const FIRST: usize = 16;
@@ -86,26 +84,14 @@ fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     (n > k).then(|| fit.cost * (1.0 + k * n.ln() / (n - k)))
 }
 
-/// What the order is searched with.
-pub(super) struct OrderSettings<'a> {
-    /// The cost over the records of the fit.
-    pub(super) likelihood: &'a Likelihood<'a>,
-    /// The cost over the held-out records.
-    pub(super) held_out: &'a Likelihood<'a>,
-    /// The measured response.
-    pub(super) measured: &'a ResponseEstimate,
-    /// Highest line used \[rad/s\].
-    pub(super) highest: f64,
-}
-
-impl OrderSettings<'_> {
+impl PreparedData<'_> {
     /// Searches the order from the unrefined models `starts`; none where no model can be afforded.
-    pub(super) fn search(
+    pub(super) fn search_order(
         &self,
         starts: &BTreeMap<usize, Fit>,
         progress: &Shares,
     ) -> Result<Option<OrderSearch>, IdentificationError> {
-        let likelihood = self.likelihood;
+        let likelihood = &self.likelihood;
         let Some(begin) = first(starts, likelihood) else { return Ok(None) };
         let is_small = starts.get(&begin).is_some_and(|fit| effective_parameters(fit) <= SMALL);
         let orders: Vec<usize> = starts.keys().copied().collect();
@@ -142,10 +128,10 @@ impl OrderSettings<'_> {
         let orders: Vec<usize> = fits.keys().rev().copied().collect();
         for order in orders {
             let above = [1, 2].into_iter().filter_map(|size| Some((size, &fits.get(&(order + size))?.model)));
-            let models = above.filter_map(|(size, model)| model.without_least_mode(size, self.measured));
-            let started = models.filter_map(|model| Fit::start(self.likelihood, model));
+            let models = above.filter_map(|(size, model)| model.without_least_mode(size, &self.measured));
+            let started = models.filter_map(|model| Fit::start(&self.likelihood, model));
             let Some(start) = started.min_by(|a, b| a.cost.total_cmp(&b.cost)) else { continue };
-            let fit = start.refined(self.likelihood, STEPS.0, LEAST_GAIN, progress)?;
+            let fit = start.refined(&self.likelihood, STEPS.0, LEAST_GAIN, progress)?;
             if fits.get(&order).is_some_and(|own| fit.cost < own.cost) {
                 fits.insert(order, fit);
             }

@@ -1,8 +1,6 @@
 //! From flight records as they were logged to segments without gaps on a uniform grid (M14, 1).
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::DMatrix;
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
@@ -95,31 +93,27 @@ impl Preparation {
 
     /// Inputs, then outputs.
     pub(super) fn channels(&self) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
-        let of_role = |role, channels| {
-            let channels: &[ChannelPreparation] = channels;
-            let signal = move |index, name: &String| Signal { role, index, name: name.clone() };
-            channels.iter().enumerate().map(move |(index, channel)| (signal(index, &channel.name), channel))
+        let of_role = |role: ChannelSide| {
+            let channels = role.of(&self.inputs, &self.outputs).iter().enumerate();
+            channels.map(move |(index, channel)| (Signal { role, index, name: channel.name.clone() }, channel))
         };
-        of_role(ChannelSide::Input, &self.inputs).chain(of_role(ChannelSide::Output, &self.outputs))
+        of_role(ChannelSide::Input).chain(of_role(ChannelSide::Output))
     }
 
     /// How a channel is prepared.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
-        let channels = if signal.role == ChannelSide::Input { &self.inputs } else { &self.outputs };
-        channels.get(signal.index)
+        signal.role.of(&self.inputs, &self.outputs).get(signal.index)
     }
 
     /// How a channel is prepared, to change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
-        let channels = if signal.role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
-        channels.get_mut(signal.index)
+        signal.role.of(&mut self.inputs, &mut self.outputs).get_mut(signal.index)
     }
 
     fn checked(&self) -> Result<(), PreparationError> {
-        for (role, channels) in [(ChannelSide::Input, &self.inputs), (ChannelSide::Output, &self.outputs)] {
-            if channels.is_empty() {
-                return Err(PreparationError::NoChannels { role });
-            }
+        let is_missing = |role: &ChannelSide| role.of(&self.inputs, &self.outputs).is_empty();
+        if let Some(role) = [ChannelSide::Input, ChannelSide::Output].into_iter().find(is_missing) {
+            return Err(PreparationError::NoChannels { role });
         }
         for (signal, channel) in self.channels() {
             let hold_s = match channel.hold {
@@ -282,11 +276,8 @@ pub enum PreparationError {
         least_s: f64,
     },
     /// Channels that never move.
-    #[error("{} never moved in any record: leave {} out", names(signals), if signals.len() == 1 { "it" } else { "them" })]
-    Constant {
-        /// Which.
-        signals: Vec<Signal>,
-    },
+    #[error("{} never moved in any record: leave {} out", names(.0), if .0.len() == 1 { "it" } else { "them" })]
+    Constant(Vec<Signal>),
 }
 
 /// The segments of `records` that can be used, what was used of each record, and what speaks against it (M14, 1).
@@ -328,7 +319,7 @@ pub fn prepare(
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let constant: Vec<Signal> = signals.into_iter().filter(|signal| is_constant(&segments, signal)).collect();
     if !constant.is_empty() {
-        return Err(PreparationError::Constant { signals: constant });
+        return Err(PreparationError::Constant(constant));
     }
     cautions.extend(uses.iter().filter_map(stuck_caution));
     cautions.extend(channel_cautions(records, &segments, preparation));
@@ -401,7 +392,7 @@ fn prepare_record(
         }
     }
     if segments.is_empty() {
-        cautions.push(RecordCaution::RecordUnused { record: record.name.clone() });
+        cautions.push(RecordCaution::RecordUnused(record.name.clone()));
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     let inputs_at_limit = inputs_at_limit(record, preparation);
@@ -416,11 +407,9 @@ fn prepare_record(
 }
 
 fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), PreparationError> {
-    let counts = [
-        (ChannelSide::Input, record.inputs.ncols(), preparation.inputs.len()),
-        (ChannelSide::Output, record.outputs.ncols(), preparation.outputs.len()),
-    ];
-    for (role, found, named) in counts {
+    for role in [ChannelSide::Input, ChannelSide::Output] {
+        let found = role.of(&record.inputs, &record.outputs).ncols();
+        let named = role.of(&preparation.inputs, &preparation.outputs).len();
         if found != named {
             return Err(PreparationError::ChannelsDiffer { record: record.name.clone(), role, found, named });
         }

@@ -1,8 +1,6 @@
 //! What models are made from and judged by, in scaled units.
 
 use super::*;
-use crate::executor::Executor;
-use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 
 /// Points of the measured response.
@@ -75,8 +73,7 @@ impl<'a> PreparedData<'a> {
         let lines = LineRange { lowest, highest: BEYOND * highest };
         let wide = lines.of(&segments, executor);
         let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
-        let length = RecordLength::of(&segments, options);
-        length.check(&narrow)?;
+        let too_short = checked_length(&segments, &narrow, options)?;
         let first = wide.iter().filter_map(|lines| lines.omega.first().copied()).fold(highest, f64::min);
         let logged = || local_polynomial(&wide, &log_spaced(first, highest, MEASURED_POINTS), executor);
         let likelihood = |spectra: &[Spectrum], measured: &ResponseEstimate| {
@@ -112,10 +109,11 @@ impl<'a> PreparedData<'a> {
         };
         let of_records = prepared.cautions.into_iter().filter(is_of_model);
         let mut cautions: Vec<_> = of_records.map(IdentificationCaution::Records).collect();
-        cautions.extend(length.caution());
+        cautions.extend(too_short);
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
-        cautions.extend(band_caution(&measured, options));
+        let shown = measured.shown_band(options.band);
+        cautions.extend(shown.map(|shown| IdentificationCaution::BandNotShown { band: options.band, shown }));
         Ok(Self {
             record_uses: prepared.records,
             scales,
@@ -225,54 +223,33 @@ const PERIODS_AN_INPUT: f64 = 3.0;
 /// Real figures that there are at least for each unknown of a model (M14.13).
 pub(super) const FIGURES_AN_UNKNOWN: usize = 5;
 
-/// How long the records are for the lower end of the band (M14.12).
-struct RecordLength {
-    /// Lower end of the band \[rad/s\].
-    lowest: f64,
-    longest_s: f64,
-    better_s: f64,
-    segments: usize,
-}
-
-impl RecordLength {
-    fn of(segments: &[Segment], options: &Options) -> Self {
-        let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
-        let period_s = TAU / options.band[0];
-        let inputs = options.inputs();
-        let of_inputs = if inputs > 1 && segments.len() == 1 { inputs as f64 * PERIODS_AN_INPUT } else { 0.0 };
-        Self {
-            lowest: options.band[0],
-            longest_s: segments.iter().map(length_s).fold(0.0, f64::max),
-            better_s: PERIODS.1.max(of_inputs) * period_s,
-            segments: segments.len(),
-        }
+/// Refuses records that show nothing of the lower end of the band, or too little for a model of the first order; says where they are
+/// shorter than they should be (M14.12).
+fn checked_length(
+    segments: &[Segment],
+    lines: &[Spectrum],
+    options: &Options,
+) -> Result<Option<IdentificationCaution>, IdentificationError> {
+    let (lowest, period_s) = (options.band[0], TAU / options.band[0]);
+    let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
+    let longest_s = segments.iter().map(length_s).fold(0.0, f64::max);
+    let of_inputs = if segments.len() == 1 { options.inputs() as f64 * PERIODS_AN_INPUT } else { 0.0 };
+    let better_s = PERIODS.1.max(of_inputs) * period_s;
+    let needed_s = PERIODS.0 * TAU / lowest;
+    if longest_s < needed_s {
+        let enough = PERIODS.0 * TAU / longest_s;
+        return Err(IdentificationError::TooShort { longest_s, lowest, needed_s, better_s, enough });
     }
-
-    /// Refuses records that show nothing of the lower end of the band, or too little for a model of the first order.
-    fn check(&self, lines: &[Spectrum]) -> Result<(), IdentificationError> {
-        let Self { lowest, longest_s, better_s, segments } = *self;
-        let needed_s = PERIODS.0 * TAU / lowest;
-        if longest_s < needed_s {
-            let enough = PERIODS.0 * TAU / longest_s;
-            return Err(IdentificationError::TooShort { longest_s, lowest, needed_s, better_s, enough });
-        }
-        let (inputs, outputs) = lines.first().map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
-        let count: usize = lines.iter().map(|of| of.omega.len()).sum();
-        let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments);
-        let unknowns = parameters_of_order(1, inputs, outputs);
-        if figures < FIGURES_AN_UNKNOWN * unknowns {
-            let needed = FIGURES_AN_UNKNOWN * unknowns;
-            return Err(IdentificationError::TooFewFigures { figures, needed, unknowns });
-        }
-        Ok(())
+    let (inputs, outputs) = lines.first().map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
+    let count: usize = lines.iter().map(|of| of.omega.len()).sum();
+    let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments.len());
+    let unknowns = parameters_of_order(1, inputs, outputs);
+    let needed = FIGURES_AN_UNKNOWN * unknowns;
+    if figures < needed {
+        return Err(IdentificationError::TooFewFigures { figures, needed, unknowns });
     }
-
-    /// That they are shorter than they should be.
-    fn caution(&self) -> Option<IdentificationCaution> {
-        let Self { lowest, longest_s, better_s, .. } = *self;
-        let periods = longest_s * lowest / TAU;
-        (periods < PERIODS.1).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s })
-    }
+    let periods = longest_s * lowest / TAU;
+    Ok((periods < PERIODS.1).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s }))
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
@@ -293,7 +270,7 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     let vector = eigen.eigenvectors.column(least);
     let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
     let signals = involved.map(|input| options.signal(ChannelSide::Input, input)).collect();
-    Err(IdentificationError::InputsDepend { signals })
+    Err(IdentificationError::InputsDepend(signals))
 }
 
 fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {
@@ -305,16 +282,10 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
     cut_off.vibrating.iter().map(caution).collect()
 }
 
-fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
-    let shown = measured.shown_band(options.band)?;
-    Some(IdentificationCaution::BandNotShown { band: options.band, shown })
-}
-
 fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<IdentificationCaution> {
     let excitation = measured.excitation();
-    let signal = |input| -> Signal { options.signal(ChannelSide::Input, input) };
     let not_swept = |input| IdentificationCaution::NotSwept {
-        signal: signal(input),
+        signal: options.signal(ChannelSide::Input, input),
         partial_coherence: excitation.partial_coherence[input],
     };
     let mut cautions: Vec<_> = excitation.not_identified().map(not_swept).collect();

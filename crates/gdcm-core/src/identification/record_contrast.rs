@@ -12,10 +12,6 @@
 //! What changes when a record is left out blames nobody: it says only that the record carries an axis alone.
 
 use super::*;
-use crate::dataset::ChannelRemedy;
-use crate::executor::each;
-use nalgebra::{Complex, DMatrix, DVector};
-use std::fmt;
 
 /// Share of a direction that a record knows at least, and at most, so that it can be compared.
 const KNOWN: (f64, f64) = (0.02, 0.98);
@@ -127,8 +123,7 @@ impl<'a> RecordContrasts<'a> {
     /// The contrasts; none where an iteration does not end.
     pub(super) fn of(likelihood: &'a Likelihood<'a>, spectra: &'a [Spectrum], fit: &'a Fit) -> Option<Self> {
         let systems = fit.systems(likelihood)?;
-        let mut whole = NormalSystem::zero(fit.model.parameters());
-        systems.iter().for_each(|part| whole.add(part));
+        let whole = NormalSystem::sum(fit.model.parameters(), &systems);
         let spare =
             likelihood.freedom(fit.model.order()).checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0)?;
         let dispersion = fit.cost / spare as f64;
@@ -136,9 +131,7 @@ impl<'a> RecordContrasts<'a> {
         let gradient = root.tr_mul(&whole.gradient);
         let records = likelihood.records();
         let contrast = |&record: &usize| {
-            let mut own = NormalSystem::zero(fit.model.parameters());
-            let segments = likelihood.segments.iter().zip(&systems);
-            segments.filter(|(segment, _)| segment.record == record).for_each(|(_, system)| own.add(system));
+            let own = likelihood.system_of(record, &systems);
             let share = root.tr_mul(&(&own.matrix * &root));
             let wanted = root.tr_mul(&own.gradient) - &share * &gradient;
             let eigen = share.try_symmetric_eigen(f64::EPSILON, 10_000)?;
@@ -182,33 +175,32 @@ impl<'a> RecordContrasts<'a> {
         let (outputs, inputs) = self.fit.model.d.shape();
         let output = |index| options.signal(ChannelSide::Output, index);
         let input = |index| options.signal(ChannelSide::Input, index);
-        let kinds: Vec<Kind> = std::iter::once(Kind::OutputsLate)
-            .chain((0..outputs).map(Kind::OutputLate))
+        let faults: Vec<RecordFault> = std::iter::once(RecordFault::OutputsLate(0.0))
+            .chain((0..outputs).map(|index| RecordFault::Late(output(index), 0.0)))
             // One input that is early is the same as all outputs late.
-            .chain((0..inputs).filter(|_| inputs > 1).map(Kind::InputLate))
-            .chain((0..outputs).map(Kind::Gain))
+            .chain((0..inputs).filter(|_| inputs > 1).map(|index| RecordFault::Late(input(index), 0.0)))
+            .chain((0..outputs).map(|index| RecordFault::Gain(output(index), 1.0)))
             .collect();
-        let sums = each(self.likelihood.executor, &kinds, |kind| self.sums(record, *kind));
+        let sums = each(self.likelihood.executor, &faults, |fault| self.sums(record, fault));
         let gain = |sums: &(f64, f64)| if sums.1 > 0.0 { sums.0 * sums.0 / sums.1 } else { 0.0 };
-        let found: Vec<(Kind, (f64, f64))> =
-            kinds.into_iter().zip(sums).filter_map(|(kind, sums)| Some((kind, sums?))).collect();
+        let found: Vec<(RecordFault, (f64, f64))> =
+            faults.into_iter().zip(sums).filter_map(|(fault, sums)| Some((fault, sums?))).collect();
         let best = found.iter().max_by(|a, b| gain(&a.1).total_cmp(&gain(&b.1)))?;
         let all = found
             .iter()
-            .find(|(kind, _)| *kind == Kind::OutputsLate)
+            .find(|(fault, _)| matches!(fault, RecordFault::OutputsLate(_)))
             .filter(|of| gain(&of.1) >= AS_GOOD * gain(&best.1));
-        let (kind, (h, s)) = *all.unwrap_or(best);
-        let value = -h / s;
-        value.is_finite().then(|| match kind {
-            Kind::OutputsLate => RecordFault::OutputsLate(value),
-            Kind::OutputLate(index) => RecordFault::Late(output(index), value),
-            Kind::InputLate(index) => RecordFault::Late(input(index), value),
-            Kind::Gain(index) => RecordFault::Gain(output(index), 1.0 + value),
+        let (fault, (h, s)) = all.unwrap_or(best);
+        let size = -h / s;
+        size.is_finite().then(|| match fault {
+            RecordFault::OutputsLate(_) => RecordFault::OutputsLate(size),
+            RecordFault::Late(signal, _) => RecordFault::Late(signal.clone(), size),
+            RecordFault::Gain(signal, _) => RecordFault::Gain(signal.clone(), 1.0 + size),
         })
     }
 
     /// `h` and `S` of a fault of a record.
-    fn sums(&self, record: usize, kind: Kind) -> Option<(f64, f64)> {
+    fn sums(&self, record: usize, fault: &RecordFault) -> Option<(f64, f64)> {
         let model = &self.fit.model;
         let (mut with_residual, mut square) = (0.0, 0.0);
         let mut with_parameters = DVector::zeros(model.parameters());
@@ -216,7 +208,7 @@ impl<'a> RecordContrasts<'a> {
             if lines.record != record {
                 continue;
             }
-            let column = lines.without_transient(model, &kind.column(lines, spectrum, model))?;
+            let column = lines.without_transient(model, &fault.column(lines, spectrum, model))?;
             with_residual += column.dotc(&part.residual).re;
             square += column.norm_squared();
             with_parameters += gradient_along(lines, model, &SegmentCost { residual: column, ..part.clone() });
@@ -227,34 +219,28 @@ impl<'a> RecordContrasts<'a> {
     }
 }
 
-/// A fault that a record may have.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    OutputsLate,
-    OutputLate(usize),
-    InputLate(usize),
-    Gain(usize),
-}
-
-impl Kind {
+impl RecordFault {
     /// What it adds to the whitened residual, outputs x lines, but for its size and sign.
-    fn column(self, lines: &SpectralLines, spectrum: &Spectrum, model: &BlockModel) -> DMatrix<Complex<f64>> {
+    fn column(&self, lines: &SpectralLines, spectrum: &Spectrum, model: &BlockModel) -> DMatrix<Complex<f64>> {
         let (outputs, count) = lines.outputs.shape();
         let mut column = DMatrix::zeros(outputs, count);
         for (k, (&omega, weight)) in lines.omega.iter().zip(&lines.weights).enumerate() {
             let turn = Complex::new(0.0, omega);
             let mut raw = vec![Complex::default(); outputs];
             match self {
-                Self::OutputsLate => {
+                Self::OutputsLate(_) => {
                     raw.iter_mut().zip(spectrum.outputs.column(k).iter()).for_each(|(to, y)| *to = turn * y);
                 }
-                Self::OutputLate(o) => raw[o] = turn * spectrum.outputs[(o, k)],
-                Self::Gain(o) => raw[o] = spectrum.outputs[(o, k)],
-                Self::InputLate(j) => {
-                    let response = model.response(omega);
-                    let moved = turn * spectrum.inputs[(j, k)];
-                    raw.iter_mut().zip(response.column(j).iter()).for_each(|(to, g)| *to = -g * moved);
+                Self::Late(Signal { role: ChannelSide::Output, index, .. }, _) => {
+                    raw[*index] = turn * spectrum.outputs[(*index, k)];
                 }
+                Self::Late(Signal { role: ChannelSide::Input, index, .. }, _) => {
+                    let moved = turn * spectrum.inputs[(*index, k)];
+                    raw.iter_mut()
+                        .zip(model.response(omega).column(*index).iter())
+                        .for_each(|(to, g)| *to = -g * moved);
+                }
+                Self::Gain(signal, _) => raw[signal.index] = spectrum.outputs[(signal.index, k)],
             }
             whiten(weight, &raw, |o, value| column[(o, k)] = value);
         }

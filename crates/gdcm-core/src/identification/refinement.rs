@@ -10,7 +10,6 @@
 //! Marquardt, SIAM J. Appl. Math. 11, 1963. Scale freedoms of the blocks are left to lambda.
 
 use super::*;
-use std::collections::BTreeMap;
 
 /// Damping at the beginning.
 const FIRST_DAMPING: f64 = 1e-4;
@@ -72,8 +71,7 @@ impl Fit {
             self.gain = 0.0;
             return;
         };
-        let mut system = NormalSystem::zero(self.model.parameters());
-        systems.iter().for_each(|part| system.add(part));
+        let system = NormalSystem::sum(self.model.parameters(), &systems);
         match damped(likelihood, &self.model, &system, self.cost, self.damping) {
             Some((model, parts, damping)) => {
                 self.cost = total(&parts);
@@ -146,7 +144,7 @@ pub(super) struct Refinement<'a> {
     /// The cost that it is the minimum of.
     pub(super) likelihood: Likelihood<'a>,
     /// What was done to the weights.
-    pub(super) cautions: Vec<IdentificationCaution>,
+    pub(super) caution: Option<IdentificationCaution>,
 }
 
 /// Runs CT-PBSID for every pole and past window; shows a first model.
@@ -177,20 +175,18 @@ pub(super) fn refine<'a>(
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
     progress.next(0.4, "order")?;
-    let (likelihood, held_out, measured) = (&data.likelihood, &data.held_out, &data.measured);
-    let settings = OrderSettings { likelihood, held_out, measured, highest: data.highest };
-    let search = settings.search(&proposal.starts, progress)?.ok_or_else(|| data.no_model())?;
+    let search = data.search_order(&proposal.starts, progress)?.ok_or_else(|| data.no_model())?;
     let chosen = search.fits.get(&search.order).ok_or_else(|| data.no_model())?.clone();
     progress.next(0.7, "refinement")?;
     let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
-    Ok(match reweighed(&data.likelihood, &fit, progress)? {
-        Some((likelihood, weighed, caution)) => {
-            Refinement { search, fit: weighed, before_weighing: Some(fit), likelihood, cautions: vec![caution] }
+    let (likelihood, before_weighing) = (data.likelihood.clone(), None);
+    let unweighed = Refinement { search, fit, before_weighing, likelihood, caution: None };
+    Ok(match reweighed(&data.likelihood, &unweighed.fit, progress)? {
+        Some((likelihood, fit, caution)) => {
+            let before_weighing = Some(unweighed.fit);
+            Refinement { fit, before_weighing, likelihood, caution: Some(caution), ..unweighed }
         }
-        None => {
-            let likelihood = data.likelihood.clone();
-            Refinement { search, fit, before_weighing: None, likelihood, cautions: Vec::new() }
-        }
+        None => unweighed,
     })
 }
 
@@ -212,7 +208,7 @@ fn reweighed<'a>(
     }
     let mean = (costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64).exp();
     let records = likelihood.records();
-    let weigh = |segment: &super::likelihood::SpectralLines| {
+    let weigh = |segment: &SpectralLines| {
         let cost = records.iter().position(|record| *record == segment.record).and_then(|k| costs.get(k));
         cost.map_or_else(|| segment.clone(), |cost| segment.with_noise(cost / mean))
     };
@@ -220,7 +216,7 @@ fn reweighed<'a>(
         Likelihood { segments: likelihood.segments.iter().map(weigh).collect(), executor: likelihood.executor };
     let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
     let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, LEAST_GAIN, progress)?;
-    Ok(Some((weighed, fit, IdentificationCaution::Reweighed { ratio: greatest / least })))
+    Ok(Some((weighed, fit, IdentificationCaution::Reweighed(greatest / least))))
 }
 
 #[cfg(test)]

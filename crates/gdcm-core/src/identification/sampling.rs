@@ -1,7 +1,6 @@
 //! The time stamps of a record.
 
 use super::*;
-use std::collections::BTreeMap;
 
 /// Stamps further off the multiples of the sample time than this share of it are uneven (M14, 1.1).
 const UNEVEN_PERCENT: f64 = 20.0;
@@ -144,7 +143,7 @@ impl Track {
         }
         let named = |((from, to, is_frozen, treatment), signals)| {
             let (start, end) = around(clock, from, to);
-            let cause = if is_frozen { Cause::Frozen { signals } } else { Cause::SamplesMissing { signals } };
+            let cause = if is_frozen { Cause::Frozen(signals) } else { Cause::SamplesMissing(signals) };
             Gap { start_s: clock.start_s + start, end_s: clock.start_s + end, cause, treatment }
         };
         (tracks, found.into_iter().map(named).collect())

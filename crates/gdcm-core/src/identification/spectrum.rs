@@ -1,9 +1,7 @@
 //! The lines of a segment's Fourier transform.
 
 use super::*;
-use crate::executor::{Executor, each};
 use gdcm_numerics::{FourierPlanner, FourierTransform};
-use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{PI, TAU};
 
 /// The lines of one segment (M14, 2): one column a line, one row a channel.

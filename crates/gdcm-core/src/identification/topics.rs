@@ -16,7 +16,7 @@ pub struct Topic {
     /// The samples between two gaps; at least one run.
     runs: Vec<Range<usize>>,
     /// Samples in a second, gaps left out.
-    rate_hz: f64,
+    pub rate_hz: f64,
 }
 
 /// A stamp that is further on than this many of the median step begins behind a gap: 3 missing samples are bridged (M14.1).
@@ -62,11 +62,6 @@ impl Topic {
         });
         let rate_hz = if length_s > 0.0 { steps as f64 / length_s } else { 0.0 };
         Ok(Self { name: name.to_owned(), time_s: times, values: kept, runs, rate_hz })
-    }
-
-    /// Samples in a second, gaps left out.
-    pub fn rate_hz(&self) -> f64 {
-        self.rate_hz
     }
 
     /// First and last stamp \[s\].
@@ -194,7 +189,7 @@ impl CommonClock {
         }
         let samples = ((end_s - start_s) * rate + 1e-6).floor() + 1.0;
         if samples > MOST_SAMPLES {
-            return Err(TopicError::TooMany { samples });
+            return Err(TopicError::TooMany(samples));
         }
         let cutoff = (5.0 * TAU * highest_hz).min(0.8 * PI * slowest.min(rate));
         Ok(Self { start_s, rate_hz: rate, samples: samples as usize, cutoff })
@@ -262,13 +257,8 @@ pub enum TopicError {
         second_start_s: f64,
     },
     /// A stamp is so far off that nothing could hold the record.
-    #[error(
-        "the topics would make a record of {samples:.0} samples: a stamp is wrong, or the rate asked for is too high"
-    )]
-    TooMany {
-        /// How many.
-        samples: f64,
-    },
+    #[error("the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high")]
+    TooMany(f64),
 }
 
 #[cfg(test)]
@@ -296,7 +286,7 @@ mod tests {
         let stamps = shaken(1500, 0.004, 0.0008);
         let values: Vec<f64> = stamps.iter().map(|t| signal(*t)).collect();
         let topic = Topic::new("v", &stamps, &values, false).unwrap();
-        assert!((topic.rate_hz() - 250.0).abs() < 0.1);
+        assert!((topic.rate_hz - 250.0).abs() < 0.1);
         let asked: Vec<f64> = (0..100).map(|k| 2.0 + 0.02 * f64::from(k)).collect();
         let found = topic.at(&asked, number(&answer["wc"]));
         let expected = numbers(&answer["expected"]);

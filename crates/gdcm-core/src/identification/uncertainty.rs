@@ -11,10 +11,7 @@
 //! The factor 2 was measured: bands of 95 % then hold 95 % of the true curves.
 
 use super::*;
-use crate::dataset::{ModelBands, Pair, PairTable};
-use crate::executor::{Executor, each};
 use crate::units::neper_to_db;
-use nalgebra::{Complex, DMatrix};
 
 /// Standard deviations that hold 95 %.
 pub const TWO_SIDED_95: f64 = 1.96;
@@ -58,9 +55,7 @@ impl ParameterCovariance {
     pub(super) fn of(likelihood: &Likelihood, fit: &Fit, systems: &[NormalSystem], cost: f64) -> Option<Self> {
         let freedom = likelihood.freedom(fit.model.order());
         let spare = freedom.checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0)?;
-        let mut system = NormalSystem::zero(fit.model.parameters());
-        systems.iter().for_each(|part| system.add(part));
-        Self::new(&system, cost / spare as f64)
+        Self::new(&NormalSystem::sum(fit.model.parameters(), systems), cost / spare as f64)
     }
 
     /// What other lines than those of a fit tell of its model.
@@ -72,8 +67,7 @@ impl ParameterCovariance {
 
     /// The cost over other records where the model may move within its uncertainty (M14.17): `r'r - r'J (G/phi + J'J)^-1 J'r`.
     pub(super) fn moved_cost(&self, records: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Option<f64> {
-        let mut system = NormalSystem::zero(model.parameters());
-        normal_systems(records, model, parts)?.iter().for_each(|part| system.add(part));
+        let system = NormalSystem::sum(model.parameters(), &normal_systems(records, model, parts)?);
         let root = pseudo_inverse_root(&self.information + &system.matrix, FREEDOM_OF_SCALE)?;
         let cost: f64 = parts.iter().map(|part| part.cost).sum();
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
@@ -233,42 +227,30 @@ impl Gradients {
 /// Damping at the beginning of a step that leaves a record out.
 const FIRST_DAMPING: f64 = 1e-4;
 
-/// The model that a record's absence leaves.
-#[derive(Clone, Debug)]
-pub(super) struct WithoutRecord {
-    /// Which record, counted from 0.
-    pub(super) record: usize,
-    /// The model.
-    pub(super) model: BlockModel,
-}
-
-/// The models without one record each, by one damped step with the systems that are there already.
+/// The number of each record, counted from 0, and the model without it, by one damped step with the systems that are there already.
 ///
 /// ```text
 /// (G - G_r + lambda diag) d = g - g_r;  lambda = 1e-4, times 8 until the cost over the other records falls
 /// ```
 ///
 /// An undamped step runs away in weak directions. With one record there is none.
-pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &[NormalSystem]) -> Vec<WithoutRecord> {
+pub(super) fn without_each_record(
+    likelihood: &Likelihood,
+    fit: &Fit,
+    systems: &[NormalSystem],
+) -> Vec<(usize, BlockModel)> {
     let records = likelihood.records();
     if records.len() < 2 {
         return Vec::new();
     }
-    let sum = |keep: &dyn Fn(usize) -> bool| {
-        let mut sum = NormalSystem::zero(fit.model.parameters());
-        let segments = likelihood.segments.iter().zip(systems);
-        segments.filter(|(segment, _)| keep(segment.record)).for_each(|(_, system)| sum.add(system));
-        sum
-    };
-    let all = sum(&|_| true);
+    let all = NormalSystem::sum(fit.model.parameters(), systems);
     let without = |&record: &usize| {
-        let rest = likelihood.without(record);
-        let system = all.without(&sum(&|other| other == record));
+        let system = all.without(&likelihood.system_of(record, systems));
         let segments = likelihood.segments.iter().zip(&fit.parts);
         let cost = segments.filter(|(segment, _)| segment.record != record).map(|(_, part)| part.cost).sum();
         // Where no step lowers the cost the full model is the best without the record as well.
-        let stepped = damped(&rest, &fit.model, &system, cost, FIRST_DAMPING);
-        WithoutRecord { record, model: stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model) }
+        let stepped = damped(&likelihood.without(record), &fit.model, &system, cost, FIRST_DAMPING);
+        (record, stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model))
     };
     each(likelihood.executor, &records, without)
 }
@@ -277,7 +259,6 @@ pub(super) fn without_each_record(likelihood: &Likelihood, fit: &Fit, systems: &
 mod tests {
     use super::*;
     use crate::executor::Sequential;
-    use nalgebra::dmatrix;
 
     /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
     fn turned(model: &BlockModel) -> BlockModel {
@@ -335,8 +316,7 @@ mod tests {
         let below = refined(turned(&starts[&2].model), 3).unwrap();
         let above = refined(starts[&6].model.clone(), 3).unwrap();
 
-        let mut system = NormalSystem::zero(fit.model.parameters());
-        fit.systems(likelihood).unwrap().iter().for_each(|part| system.add(part));
+        let system = NormalSystem::sum(fit.model.parameters(), &fit.systems(likelihood).unwrap());
         let spare = likelihood.freedom(4) - effective_parameters(&fit);
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];

@@ -1,8 +1,7 @@
 //! A model against a record in time.
 
 use super::*;
-use crate::executor::{Executor, each};
-use nalgebra::{DMatrix, DVector, RowDVector};
+use nalgebra::RowDVector;
 
 /// Time constants of the fastest diverging mode that a window lasts (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;

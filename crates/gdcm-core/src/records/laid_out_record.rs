@@ -1,11 +1,9 @@
 //! A record with the columns that are its channels, and what its name says about it.
 
 use super::*;
-use crate::assembly::{NamePattern, Row, folded_name, standard_patterns};
-use crate::dataset::{ConditionId, ConditionRecord, Dataset, RecordKind};
-use crate::identification::{FlightRecord, RecordUse};
-use nalgebra::DMatrix;
-use std::sync::Arc;
+use crate::assembly::{NamePattern, Row};
+use crate::dataset::{ConditionId, RecordKind};
+use crate::identification::RecordUse;
 
 /// What the names of folders and files say about a record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,36 +18,24 @@ pub struct RecordGuess {
     pub airspeed_kt: Option<f64>,
 }
 
-/// What names of sweeps, of several sines, of steps, and of records for validation hold.
-const SWEEPS: [&str; 3] = ["sweep", "chirp", "swp"];
-const MULTISINES: [&str; 3] = ["multisine", "schroeder", "msine"];
-const STEPS: [&str; 4] = ["3211", "doublet", "dblt", "step"];
+/// What names of manoeuvres, and of records for validation, hold.
+const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
+    (RecordKind::Sweep, &["sweep", "chirp", "swp"]),
+    (RecordKind::Multisine, &["multisine", "schroeder", "msine"]),
+    (RecordKind::ThreeTwoOneOne, &["3211", "doublet", "dblt", "step"]),
+];
 const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdout", "heldout"];
 /// Words that say so too, but stand in others ("value", "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 /// What names of recorded references end with: pilot's and position references, setpoints, injected signals; short ones stand alone.
-const REFERENCES: [&str; 13] = [
-    "ref",
-    "reference",
-    "cmd",
-    "command",
-    "sp",
-    "setpoint",
-    "des",
-    "desired",
-    "targ",
-    "target",
-    "chirp",
-    "excitation",
-    "x0",
-];
+const REFERENCES: &str = "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
 
 /// Whether a word of a name says that it is a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
 fn names_reference(name: &str) -> bool {
     let lower = name.to_lowercase();
     let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
-    words.any(|word| REFERENCES.iter().any(|end| word == *end || end.len() > 2 && word.ends_with(end)))
+    words.any(|word| REFERENCES.split(' ').any(|end| word == end || end.len() > 2 && word.ends_with(end)))
 }
 
 impl RecordGuess {
@@ -72,15 +58,7 @@ impl RecordGuess {
         // "3-2-1-1" and "hold_out" are "3211" and "holdout".
         let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
-        let kind = if holds(&SWEEPS) {
-            RecordKind::Sweep
-        } else if holds(&MULTISINES) {
-            RecordKind::Multisine
-        } else if holds(&STEPS) {
-            RecordKind::ThreeTwoOneOne
-        } else {
-            RecordKind::Other
-        };
+        let kind = MANOEUVRES.into_iter().find(|(_, words)| holds(words)).map_or(RecordKind::Other, |(kind, _)| kind);
         let mut words = lower.split(|c: char| !c.is_alphabetic());
         let held_out = holds(&VALIDATION) || words.any(|word| VALIDATION_WORDS.contains(&word));
         let mut row = Row::default();
@@ -182,7 +160,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
         let (before, from) = records.split_at_mut(index);
         let record = &mut from[0];
         let Some(flight) = record.used_flight() else { continue };
-        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| same_samples(other, flight));
+        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| is_copy(other, flight));
         let Some(first) = before.iter().find(is_it) else { continue };
         let caution = LayoutCaution::Copy { first: first.table.name.clone() };
         if !record.cautions.contains(&caution) {
@@ -193,7 +171,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
 }
 
 /// Whether all samples are the same to the last bit; the clocks may differ.
-fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
+fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
     let same = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
         a.shape() == b.shape() && a.iter().zip(b.iter()).all(|(a, b)| a.to_bits() == b.to_bits())
     };
@@ -203,7 +181,6 @@ fn same_samples(a: &FlightRecord, b: &FlightRecord) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::{ChannelRule, standard_patterns};
 
     #[test]
     fn columns_that_may_have_driven_the_loop_are_named_those_first_whose_names_say_so() {

@@ -1,17 +1,14 @@
 //! What is wrong, or odd, in the columns chosen from a record.
 
+use super::*;
 use crate::identification::TopicError;
-use crate::units::{number, telling};
 
 /// Why the columns chosen from a record cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutProblem {
-    /// Nothing says when the samples were taken.
-    #[error("no column gives the time; say which does, or the sample rate (columns: {found})")]
-    NoTime {
-        /// The columns there are.
-        found: String,
-    },
+    /// Nothing says when the samples were taken; the columns there are.
+    #[error("no column gives the time; say which does, or the sample rate (columns: {0})")]
+    NoTime(String),
     /// There is no column of the name asked for.
     #[error("there is no column \"{name}\"; there are {found}")]
     NoSuchColumn {
@@ -52,16 +49,13 @@ pub enum LayoutProblem {
         step_s: f64,
     },
     /// A sample time that is not positive.
-    #[error("the sample time is {} s; it must be a positive number of seconds", number(*step_s))]
-    SampleTime {
-        /// The sample time \[s\].
-        step_s: f64,
-    },
+    #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
+    SampleTime(f64),
     /// No column is this channel.
     #[error("no column is the {side} {channel}; say which is (columns: {found})")]
     NoColumn {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel.
         channel: String,
         /// The columns there are.
@@ -70,8 +64,8 @@ pub enum LayoutProblem {
     /// Several columns can be this channel.
     #[error("several columns can be the {side} {channel}: {found}; say which is")]
     SeveralColumns {
-        /// "input" or "output".
-        side: &'static str,
+        /// Input or output.
+        side: ChannelSide,
         /// The channel.
         channel: String,
         /// Their names.

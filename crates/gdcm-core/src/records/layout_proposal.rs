@@ -1,9 +1,6 @@
 //! Columns proposed for the time and the channels of a record.
 
-use super::sample_units::possible_units;
 use super::*;
-use crate::assembly::{ChannelRule, SignedName, conversion_factor, folded_name, same_channel, sign_between};
-use crate::units::number;
 
 /// What the engineer says about the time of records.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -40,43 +37,48 @@ impl RecordLayout {
     ///          unit that its samples can be in, else it is asked for
     /// ```
     pub fn proposed(table: &RecordTable, channels: &RecordChannels, time: &TimeWish) -> LayoutProposal {
-        let mut proposal = LayoutProposal::default();
-        let time = proposal.time(table, time);
+        let mut proposer = Proposer { table, channels, notes: Vec::new(), problems: Vec::new() };
+        let time = proposer.time(time);
         let time_column = match time {
             Some(TimeBase::Column { column, .. }) => Some(column),
             _ => None,
         };
-        let is_addressed = |rules: &[ChannelRule]| rules.iter().any(|rule| !rule.aliases.is_empty());
-        let by_name = table.named || is_addressed(&channels.inputs) || is_addressed(&channels.outputs);
-        let (inputs, outputs) = if by_name {
-            (
-                proposal.named(table, ("input", ChannelSide::Input), channels, time_column),
-                proposal.named(table, ("output", ChannelSide::Output), channels, time_column),
-            )
+        let mut rules = channels.inputs.iter().chain(&channels.outputs);
+        let (inputs, outputs) = if table.named || rules.clone().any(|rule| !rule.aliases.is_empty()) {
+            let inputs = proposer.named(ChannelSide::Input, time_column);
+            (inputs, proposer.named(ChannelSide::Output, time_column))
         } else {
-            let channel = channels.inputs.iter().chain(&channels.outputs).map(|rule| rule.name.clone()).next();
-            let (channel, found) = (channel.unwrap_or_default(), table.columns.len());
-            proposal.problems.push(LayoutProblem::Unnamed { channel, found });
+            let channel = rules.next().map(|rule| rule.name.clone()).unwrap_or_default();
+            proposer.problems.push(LayoutProblem::Unnamed { channel, found: table.columns.len() });
             (vec![None; channels.inputs.len()], vec![None; channels.outputs.len()])
         };
-        proposal.layout = RecordLayout { time, inputs, outputs };
-        let told = std::mem::take(&mut proposal.problems);
+        let layout = RecordLayout { time, inputs, outputs };
+        let Proposer { mut notes, problems: told, .. } = proposer;
         // Where something was said of a channel already, that it has no column is no news.
-        let rest = proposal.layout.problems(table, channels).into_iter().filter(|problem| match problem {
-            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime { .. } => told.is_empty(),
+        let rest = layout.problems(table, channels).into_iter().filter(|problem| match problem {
+            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_) => told.is_empty(),
             _ => true,
         });
-        proposal.problems = told.iter().cloned().chain(rest).collect();
-        proposal.cautions = proposal.layout.cautions(table, channels);
-        if let Some(Ok(resampling)) = Resampling::of(&proposal.layout, table, channels) {
-            proposal.notes.extend(resampling.words());
+        let problems = told.iter().cloned().chain(rest).collect();
+        if let Some(Ok(resampling)) = Resampling::of(&layout, table, channels) {
+            notes.extend(resampling.words());
         }
-        proposal
+        let cautions = layout.cautions(table, channels);
+        LayoutProposal { layout, notes, problems, cautions }
     }
 }
 
-impl LayoutProposal {
-    fn time(&mut self, table: &RecordTable, wish: &TimeWish) -> Option<TimeBase> {
+/// Proposes columns of a table for channels, and keeps what is said of that.
+struct Proposer<'r> {
+    table: &'r RecordTable,
+    channels: &'r RecordChannels,
+    notes: Vec<String>,
+    problems: Vec<LayoutProblem>,
+}
+
+impl Proposer<'_> {
+    fn time(&mut self, wish: &TimeWish) -> Option<TimeBase> {
+        let table = self.table;
         if table.columns.iter().any(|column| column.topic.is_some()) {
             self.notes.push("time from the stamps of each topic".to_owned());
             return Some(TimeBase::Topics);
@@ -105,34 +107,29 @@ impl LayoutProposal {
             self.notes.push(format!("one sample each {} s, as the file says", number(step_s)));
             return Some(TimeBase::SampleTime(step_s));
         }
-        self.problems.push(LayoutProblem::NoTime { found: table.column_names() });
+        self.problems.push(LayoutProblem::NoTime(table.column_names()));
         None
     }
 
     /// Columns of one side, by name.
-    fn named(
-        &mut self,
-        table: &RecordTable,
-        (side, of_file): (&'static str, ChannelSide),
-        channels: &RecordChannels,
-        time: Option<usize>,
-    ) -> Vec<Option<ColumnUse>> {
-        let rules = if of_file == ChannelSide::Input { &channels.inputs } else { &channels.outputs };
+    fn named(&mut self, side: ChannelSide, time: Option<usize>) -> Vec<Option<ColumnUse>> {
+        let table = self.table;
+        let rules = side.of(&self.channels.inputs, &self.channels.outputs);
         let free = |column: &usize| Some(*column) != time;
         let candidates: Vec<Vec<usize>> =
-            rules.iter().map(|rule| candidates(table, rule, of_file).into_iter().filter(free).collect()).collect();
+            rules.iter().map(|rule| candidates(table, rule, side).into_iter().filter(free).collect()).collect();
         let of_side: Vec<usize> =
-            (0..table.columns.len()).filter(|&column| table.columns[column].side == Some(of_file)).collect();
+            (0..table.columns.len()).filter(|&column| table.columns[column].side == Some(side)).collect();
         if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty() {
             self.notes
                 .push(format!("the file has as many {side}s under other names ({}): taken in order", rules.len()));
-            return rules.iter().zip(of_side).map(|(rule, column)| self.used(table, channels, rule, column)).collect();
+            return rules.iter().zip(of_side).map(|(rule, column)| self.used(rule, column)).collect();
         }
         let mut uses = Vec::with_capacity(rules.len());
         for (rule, candidates) in rules.iter().zip(candidates) {
             let channel = rule.name.clone();
             uses.push(match candidates.as_slice() {
-                [column] => self.used(table, channels, rule, *column),
+                [column] => self.used(rule, *column),
                 [] => {
                     self.problems.push(LayoutProblem::NoColumn { side, channel, found: table.column_names() });
                     None
@@ -148,16 +145,10 @@ impl LayoutProposal {
     }
 
     /// The column with its factor, turned where a mark in its name, or in what is asked for, says so; in words.
-    fn used(
-        &mut self,
-        table: &RecordTable,
-        channels: &RecordChannels,
-        rule: &ChannelRule,
-        column: usize,
-    ) -> Option<ColumnUse> {
-        let used = self.converted(table, channels, rule, column)?;
-        let said = matches!(channels.said.get(&rule.name), Some(SaidConversion::Factor(_)));
-        let (name, quoted) = (table.columns[column].name.as_str(), table.quoted(column));
+    fn used(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
+        let used = self.converted(rule, column)?;
+        let said = matches!(self.channels.said.get(&rule.name), Some(SaidConversion::Factor(_)));
+        let (name, quoted) = (self.table.columns[column].name.as_str(), self.table.quoted(column));
         let has_mark = |text: &&str| SignedName::of(text).name != text.trim();
         let of_alias = rule.aliases.iter().map(String::as_str).find(has_mark);
         let sign = match of_alias {
@@ -179,15 +170,10 @@ impl LayoutProposal {
     }
 
     /// The column with the factor from the file's unit to the channel's, and in words.
-    fn converted(
-        &mut self,
-        table: &RecordTable,
-        channels: &RecordChannels,
-        rule: &ChannelRule,
-        column: usize,
-    ) -> Option<ColumnUse> {
+    fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
+        let table = self.table;
         let quoted = table.quoted(column);
-        let said = match channels.said.get(&rule.name) {
+        let said = match self.channels.said.get(&rule.name) {
             Some(SaidConversion::Factor(factor)) => {
                 self.notes.push(format!("{}: column {quoted}, × {} as asked", rule.name, number(*factor)));
                 return Some(ColumnUse::times(column, *factor));
@@ -201,7 +187,7 @@ impl LayoutProposal {
             return Some(ColumnUse::as_it_is(column));
         }
         let Some(from) = said.or(rule.unit_in_files.as_deref()) else {
-            return Some(self.by_samples(table, rule, column));
+            return Some(self.by_samples(rule, column));
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {
             let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
@@ -217,7 +203,8 @@ impl LayoutProposal {
     }
 
     /// The column of a file that does not say its unit, in words where the samples leave nothing open.
-    fn by_samples(&mut self, table: &RecordTable, rule: &ChannelRule, column: usize) -> ColumnUse {
+    fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
+        let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);
         let (name, quoted) = (&rule.name, table.quoted(column));
         match possible_units(&table.columns[column], &rule.unit).as_slice() {

@@ -9,24 +9,30 @@
 //! Samples are the file's, times a factor; nothing is filtered or taken off. Where the channels have clocks of their own, they are
 //! brought to one (M14.11), and that is said.
 
-mod channel_list;
 mod laid_out_record;
 mod layout_problem;
 mod layout_proposal;
 #[cfg(test)]
 mod layout_tests;
-mod record_dataset;
+mod record_channels;
 mod record_layout;
 mod record_table;
 mod resampling;
-mod sample_units;
 mod spectrogram;
-mod time_base;
 mod topic_tables;
 
-use crate::dataset::ChannelSide;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor, folded_name};
+use crate::assembly::{SignedName, same_channel, sign_between, standard_patterns, time_name_rank};
+use crate::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
+use crate::identification::FlightRecord;
+use crate::units::{number, telling};
 
 pub use self::{
-    channel_list::*, laid_out_record::*, layout_problem::*, layout_proposal::*, record_dataset::*, record_layout::*,
-    record_table::*, resampling::*, spectrogram::*, time_base::*, topic_tables::*,
+    laid_out_record::*, layout_problem::*, layout_proposal::*, record_channels::*, record_layout::*, record_table::*,
+    resampling::*, spectrogram::*, topic_tables::*,
 };

@@ -1,12 +1,6 @@
 //! Which columns of a record are its time and its channels.
 
-use super::sample_units::{magnitude, unsaid_unit};
 use super::*;
-use crate::assembly::ChannelRule;
-use crate::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
-use crate::identification::FlightRecord;
-use nalgebra::DMatrix;
-use std::collections::BTreeMap;
 
 /// A column of a record that is a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,21 +44,33 @@ pub struct RecordLayout {
 }
 
 impl RecordLayout {
+    /// Every channel, inputs first, with the column that is chosen for it.
+    pub(super) fn uses<'r>(
+        &'r self,
+        channels: &'r RecordChannels,
+    ) -> impl Iterator<Item = (ChannelSide, &'r ChannelRule, Option<ColumnUse>)> {
+        let of_side = |side: ChannelSide| {
+            let uses = side.of(&self.inputs, &self.outputs);
+            let rules = side.of(&channels.inputs, &channels.outputs).iter().enumerate();
+            rules.map(move |(index, rule)| (side, rule, uses.get(index).copied().flatten()))
+        };
+        of_side(ChannelSide::Input).chain(of_side(ChannelSide::Output))
+    }
+
+    /// The channels for which a column is chosen.
+    fn chosen<'r>(&'r self, channels: &'r RecordChannels) -> impl Iterator<Item = (&'r ChannelRule, ColumnUse)> {
+        self.uses(channels).filter_map(|(_, rule, used)| Some((rule, used?)))
+    }
+
     /// Everything that keeps the chosen columns from being used; nothing where [`RecordLayout::flight_record`] gives a record.
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut problems = self.time_problems(table);
-        for (side, rules, uses) in
-            [("input", &channels.inputs, &self.inputs), ("output", &channels.outputs, &self.outputs)]
-        {
-            for (index, rule) in rules.iter().enumerate() {
-                match uses.get(index).copied().flatten() {
-                    Some(used) => problems.extend(channel_problem(table, rule, used)),
-                    None => {
-                        let (channel, found) = (rule.name.clone(), table.column_names());
-                        problems.push(LayoutProblem::NoColumn { side, channel, found });
-                    }
-                }
-            }
+        for (side, rule, used) in self.uses(channels) {
+            let missing = || {
+                let (channel, found) = (rule.name.clone(), table.column_names());
+                Some(LayoutProblem::NoColumn { side, channel, found })
+            };
+            problems.extend(used.map_or_else(missing, |used| channel_problem(table, rule, used)));
         }
         problems.extend(self.shared_columns(table, channels));
         if problems.is_empty() {
@@ -83,8 +89,7 @@ impl RecordLayout {
             let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
-        let (inputs, outputs) = (chosen(&channels.inputs, &self.inputs), chosen(&channels.outputs, &self.outputs));
-        let all: Vec<_> = inputs.into_iter().chain(outputs).collect();
+        let all: Vec<_> = self.chosen(channels).collect();
         for (index, (rule, used)) in all.iter().enumerate() {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
             let (channel, column) = (rule.name.clone(), table.quoted(used.column));
@@ -165,8 +170,7 @@ impl RecordLayout {
 
     /// How a channel is used, to change.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
-        let uses = if role == ChannelSide::Input { &mut self.inputs } else { &mut self.outputs };
-        uses.get_mut(index)?.as_mut()
+        role.of(&mut self.inputs, &mut self.outputs).get_mut(index)?.as_mut()
     }
 
     /// The same columns, by name, of another record; none where that lacks one of them.
@@ -200,9 +204,7 @@ impl RecordLayout {
         guess: &RecordGuess,
         channels: &RecordChannels,
     ) -> ConditionRecord {
-        let sides = [(&channels.inputs, &self.inputs), (&channels.outputs, &self.outputs)];
-        let used = sides.into_iter().flat_map(|(rules, uses)| chosen(rules, uses));
-        let remedies = used.map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
+        let remedies = self.chosen(channels).map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
         ConditionRecord {
             remedies: remedies.filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect(),
             variable: table.source.variable.clone(),
@@ -217,19 +219,16 @@ impl RecordLayout {
 
     fn time_problems(&self, table: &RecordTable) -> Vec<LayoutProblem> {
         match self.time {
-            None => vec![LayoutProblem::NoTime { found: table.column_names() }],
             Some(TimeBase::Topics) => Vec::new(),
             Some(TimeBase::SampleTime(step_s)) if step_s.is_finite() && step_s > 0.0 => Vec::new(),
-            Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime { step_s }],
-            Some(TimeBase::Column { column, .. }) if column >= table.columns.len() => {
-                vec![LayoutProblem::NoTime { found: table.column_names() }]
-            }
-            Some(time @ TimeBase::Column { column, .. }) => {
+            Some(TimeBase::SampleTime(step_s)) => vec![LayoutProblem::SampleTime(step_s)],
+            Some(time @ TimeBase::Column { column, .. }) if column < table.columns.len() => {
                 let quoted = table.quoted(column);
                 let step = time.step_s(table).filter(|step_s| *step_s > LONGEST_STEP_S);
                 let step = step.map(|step_s| LayoutProblem::TimeStep { column: quoted.clone(), step_s });
                 order_problem(&time.times_s(table), quoted).into_iter().chain(step).collect()
             }
+            Some(TimeBase::Column { .. }) | None => vec![LayoutProblem::NoTime(table.column_names())],
         }
     }
 
@@ -240,9 +239,7 @@ impl RecordLayout {
             taken.push((column, "the time".to_owned()));
         }
         let mut problems = Vec::new();
-        for (rule, used) in
-            chosen(&channels.inputs, &self.inputs).into_iter().chain(chosen(&channels.outputs, &self.outputs))
-        {
+        for (rule, used) in self.chosen(channels) {
             if let Some((_, second)) = taken.iter().find(|(column, _)| *column == used.column) {
                 let (first, second, column) = (rule.name.clone(), second.clone(), table.quoted(used.column));
                 problems.push(LayoutProblem::OneColumn { first, second, column });
@@ -251,11 +248,6 @@ impl RecordLayout {
         }
         problems
     }
-}
-
-/// The channels for which a column is chosen.
-fn chosen<'r>(rules: &'r [ChannelRule], uses: &[Option<ColumnUse>]) -> Vec<(&'r ChannelRule, ColumnUse)> {
-    rules.iter().zip(uses).filter_map(|(rule, used)| Some((rule, (*used)?))).collect()
 }
 
 fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
@@ -288,7 +280,8 @@ fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
     first.map(|(sample, before, after)| LayoutProblem::TimeOrder { column, count, samples, sample, before, after })
 }
 
-fn same_samples(first: &[f64], second: &[f64]) -> bool {
+/// Whether numbers are the same, missing ones in the same places.
+pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
     first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
 }
 
@@ -339,67 +332,120 @@ const LONGEST_DELAY_S: f64 = 10.0;
 /// The longest line between two samples, over the median step: gaps of three samples, as where records are prepared (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
-// The channels that records are to give.
+// In which units the samples of a channel can be, and in which they cannot.
 
-/// What the engineer says of the samples of a channel, whatever their file says.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SaidConversion {
-    /// They are in this unit.
-    Unit(String),
-    /// How many of the channel's units one of the column's is; negative where the sign is the other one.
-    Factor(f64),
+/// The most that a helicopter has of a dimension, in a unit of that dimension.
+const MOST: [(Dimension, f64, &str); 7] = [
+    (Dimension::AngularRate, 400.0, "deg/s"),
+    (Dimension::Angle, 3600.0, "deg"),
+    (Dimension::AngularAcceleration, 5000.0, "deg/s^2"),
+    (Dimension::Acceleration, 15.0, "g"),
+    (Dimension::Speed, 500.0, "kt"),
+    (Dimension::Part, 3.0, "1"),
+    (Dimension::Length, 50_000.0, "m"),
+];
+
+/// The units that channels are logged in.
+const LOGGED: [&str; 21] = [
+    "rad/s", "deg/s", "rad", "deg", "rad/s^2", "deg/s^2", "g", "m/s^2", "ft/s^2", "m/s", "ft/s", "kt", "%", "1", "m",
+    "cm", "mm", "ft", "in", "N", "lb",
+];
+
+/// The most that a helicopter has of what a unit measures, in that unit.
+fn most(unit: &str) -> Option<f64> {
+    let dimension = PhysicalUnit::of(unit)?.dimension;
+    let (_, limit, of) = MOST.into_iter().find(|(of, ..)| *of == dimension)?;
+    Some(limit * conversion_factor(of, unit)?)
 }
 
-/// Inputs and outputs that records are to give. A channel without a unit is taken in that of the file; one with other names is looked for
-/// by these alone.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RecordChannels {
-    /// Inputs, in order.
-    pub inputs: Vec<ChannelRule>,
-    /// Outputs, in order.
-    pub outputs: Vec<ChannelRule>,
-    /// What is said of samples, by channel.
-    pub said: BTreeMap<String, SaidConversion>,
-    /// How topics with clocks of their own become one record.
-    pub resampling: ResamplingWish,
+/// The greatest sample without its sign.
+fn peak(column: &RecordColumn) -> Option<f64> {
+    column.range().map(|(least, most)| least.abs().max(most.abs()))
 }
 
-impl RecordChannels {
-    /// The channels of a dataset, in its units.
-    pub fn of_dataset(dataset: &Dataset) -> Self {
-        let rule =
-            |channel: &Channel| ChannelRule { unit: channel.unit.clone(), ..ChannelRule::named(channel.name.clone()) };
-        Self {
-            inputs: dataset.inputs().iter().map(rule).collect(),
-            outputs: dataset.outputs().iter().map(rule).collect(),
-            said: BTreeMap::new(),
-            resampling: ResamplingWish { band_end: Some(dataset.band().max()), ..ResamplingWish::default() },
+/// The units that the samples of a column can be in, for a channel of this unit, which stands first: those of the same dimension in
+/// which no helicopter has less than the greatest sample. Samples that are all zero, and a unit that is not known, leave nothing open.
+pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
+    let Some(peak) = peak(column).filter(|peak| *peak > 0.0) else { return Vec::new() };
+    let is_other = |other: &&str| conversion_factor(other, unit).is_some_and(|factor| factor != 1.0);
+    let units = std::iter::once(unit).filter(|unit| PhysicalUnit::of(unit).is_some());
+    let units = units.chain(LOGGED.into_iter().filter(is_other));
+    units.filter(|unit| most(unit).is_none_or(|most| peak <= most)).collect()
+}
+
+/// The problem of a channel whose unit neither its file nor its samples say.
+pub(super) fn unsaid_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+    let units = used.open_units(table, &rule.unit);
+    let (last, rest) = units.split_last()?;
+    Some(LayoutProblem::UnsaidUnit {
+        channel: rule.name.clone(),
+        column: table.quoted(used.column),
+        unit: rule.unit.clone(),
+        units: format!("{} or {last}", rest.join(", ")),
+    })
+}
+
+/// The fault of a channel whose samples cannot be in its unit.
+pub(super) fn magnitude(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+    // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
+    let column = table.columns.get(used.column).filter(|column| column.meaning.is_none())?;
+    let value = peak(column)? * used.gain().abs();
+    let (unit, most) = (PhysicalUnit::of(&rule.unit)?, most(&rule.unit)?);
+    if value <= most {
+        return None;
+    }
+    let hint = match unit.dimension {
+        Dimension::AngularRate if column.unit.as_deref().is_some_and(|unit| unit.contains("rad")) => {
+            "; its samples look like deg/s"
+        }
+        Dimension::Part if rule.unit != "%" => "; its samples look like %",
+        _ => "",
+    };
+    Some(LayoutProblem::Magnitude {
+        channel: rule.name.clone(),
+        column: table.quoted(used.column),
+        value,
+        most,
+        unit: rule.unit.clone(),
+        hint: hint.to_owned(),
+    })
+}
+
+impl ColumnUse {
+    /// A column for a channel of this unit, by the unit that the file says or else by the only one that its samples can be in; the unit
+    /// is open where they can be in several.
+    pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
+        let Some(of) = table.columns.get(column) else { return Self::as_it_is(column) };
+        let said = of.said_unit().and_then(|said| conversion_factor(said, unit));
+        match (said, possible_units(of, unit).as_slice()) {
+            (Some(factor), _) => Self::times(column, factor),
+            (None, [only]) => Self::times(column, conversion_factor(only, unit).unwrap_or(1.0)),
+            (None, [_, _, ..]) if of.said_unit().is_none() => Self { is_unit_open: true, ..Self::as_it_is(column) },
+            _ => Self::as_it_is(column),
         }
     }
 
-    /// The same for records that the dataset itself names: these are in its units where their files say none, times their remedies.
+    /// The units among which one is still to be said, for a channel of this unit; none where nothing is open.
+    pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
+        let column = table.columns.get(self.column).filter(|_| self.is_unit_open);
+        column.map_or_else(Vec::new, |column| possible_units(column, unit))
+    }
+
+    /// The column in a unit that is said, for a channel of another.
     #[must_use]
-    pub fn of_named_records(mut self) -> Self {
-        for rule in self.inputs.iter_mut().chain(&mut self.outputs) {
-            rule.unit_in_files = Some(rule.unit.clone());
-        }
-        self
+    pub fn in_unit(self, said: &str, unit: &str) -> Self {
+        Self { factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0), is_unit_open: false, ..self }
     }
 
-    /// Gives channels without a unit that of the column that this layout takes for them, so that further records are converted.
-    pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
-        let sides = [(&mut self.inputs, &layout.inputs), (&mut self.outputs, &layout.outputs)];
-        for (rules, uses) in sides {
-            for (rule, used) in rules.iter_mut().zip(uses).filter(|(rule, _)| rule.unit.is_empty()) {
-                let of_file = || used.and_then(|used| table.columns.get(used.column)?.unit.clone());
-                let unit = match self.said.get(&rule.name) {
-                    Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
-                    // In which unit the product is, nobody says.
-                    Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
-                    _ => of_file(),
-                };
-                rule.unit = unit.unwrap_or_default();
-            }
-        }
+    /// What is put right in this record, and whatever else was said of the column: what takes it from its file, in the dataset's units
+    /// where that says none, to the samples that are used. Whoever reads the record again by the dataset knows nothing else.
+    pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
+        let of_file = table.columns.get(self.column).map_or(1.0, |column| {
+            let unit = column.said_unit().filter(|_| !rule.unit.is_empty());
+            let factor = unit.and_then(|unit| conversion_factor(unit, &rule.unit)).unwrap_or(1.0);
+            factor * sign_between(&column.name, &rule.name).unwrap_or(1.0)
+        });
+        let besides = if self.factor == of_file { 1.0 } else { self.factor / of_file };
+        ChannelRemedy { factor: self.remedy.factor * besides, ..self.remedy }
     }
 }

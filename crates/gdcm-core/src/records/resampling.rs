@@ -1,13 +1,7 @@
 //! Chosen columns with clocks of their own, brought to one (M14.11).
 
 use super::*;
-use crate::assembly::ChannelRule;
-use crate::dataset::ChannelSide;
-use crate::identification::{CommonClock, FlightRecord, Topic, TopicError, is_held};
-use crate::units::telling;
-use nalgebra::DMatrix;
-use std::collections::BTreeSet;
-use std::sync::Arc;
+use crate::identification::{CommonClock, Topic, TopicError, is_held};
 
 /// What decides how topics with clocks of their own become one record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -50,16 +44,10 @@ impl Resampling {
         channels: &RecordChannels,
     ) -> Option<Result<Self, TopicError>> {
         let wish = &channels.resampling;
-        let sides = [
-            (ChannelSide::Input, &channels.inputs, &layout.inputs),
-            (ChannelSide::Output, &channels.outputs, &layout.outputs),
-        ];
         let mut chosen: Vec<(ChannelSide, &ChannelRule, ColumnUse, &RecordColumn)> = Vec::new();
-        for (side, rules, uses) in sides {
-            for (rule, used) in rules.iter().zip(uses) {
-                let used = (*used)?;
-                chosen.push((side, rule, used, table.columns.get(used.column)?));
-            }
+        for (side, rule, used) in layout.uses(channels) {
+            let used = used?;
+            chosen.push((side, rule, used, table.columns.get(used.column)?));
         }
         let own: Vec<Arc<TopicClock>> = chosen.iter().filter_map(|(.., column)| column.topic.clone()).collect();
         let one_clock = own.windows(2).all(|pair| pair[0].time_s == pair[1].time_s);
@@ -89,7 +77,7 @@ impl Resampling {
     /// What is done, in words.
     pub(super) fn words(&self) -> Vec<String> {
         let rates: Vec<String> =
-            self.topics.iter().map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz(), 1))).collect();
+            self.topics.iter().map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1))).collect();
         let resampled = format!(
             "resampled to {} Hz, every channel through the same low-pass at {} rad/s (logged: {})",
             telling(self.clock.rate_hz, 2),

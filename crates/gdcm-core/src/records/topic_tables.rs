@@ -4,10 +4,6 @@
 //! one log, each with its own stamps. What a table is called names its columns.
 
 use super::*;
-use crate::assembly::time_name_rank;
-use crate::units::number;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Names of the one column that a topic has beside its stamps, which say nothing.
 const PLAIN: [&str; 8] = ["value", "values", "data", "signal", "signals", "x", "y", "val"];
@@ -102,7 +98,7 @@ impl RecordTable {
             (Some(a), Some(b)) => a.1.min(b.1) - a.0.max(b.0) > 0.5 * (a.1 - a.0).min(b.1 - b.0),
             _ => false,
         };
-        if !clocks.iter().all(overlaps) || clocks.iter().all(|clock| same_stamps(clock, &clocks[0])) {
+        if !clocks.iter().all(overlaps) || clocks.iter().all(|clock| same_samples(clock, &clocks[0])) {
             return self;
         }
         let ends = times.iter().skip(1).copied().chain([self.columns.len()]).collect::<Vec<_>>();
@@ -185,10 +181,6 @@ fn rises(stamps: &[f64]) -> bool {
     known.len() >= Separation::FEWEST
         && known.windows(2).all(|pair| pair[1] > pair[0])
         && rest.iter().all(|stamp| stamp.is_nan())
-}
-
-fn same_stamps(a: &[f64], b: &[f64]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
 }
 
 /// What topics of one log have in common: their file, or else the folder of their files.
@@ -303,7 +295,8 @@ fn topic_columns(table: &RecordTable, name: &str, seconds: &BTreeMap<String, f64
 }
 
 /// Names in a row, no more than a message can bear.
-fn shown(names: &[&str]) -> String {
+pub(super) fn shown(names: &[&str]) -> String {
+    /// Enough to see what went wrong.
     const SHOWN: usize = 20;
     let more = names.len().saturating_sub(SHOWN);
     let names = names.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
@@ -313,7 +306,6 @@ fn shown(names: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::assembly::ChannelRule;
 
     fn topic(file: &str, variable: Option<&str>, columns: &[&str], step: f64) -> RecordTable {
         let stamps: Vec<f64> = (0..500).map(|k| step * f64::from(k)).collect();

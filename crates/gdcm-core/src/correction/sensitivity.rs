@@ -43,11 +43,9 @@ impl Sensitivity {
         let change = if is_dear { "lowering" } else { "raising" };
         let way = match (self.quantity, self.restraint) {
             (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by 1 dB"),
-            (Quantity::Gain(_), ActiveConstraint::LowerBound(_)) => {
-                format!("on its lower bound: {change} the bound by 1 dB")
-            }
-            (Quantity::Gain(_), ActiveConstraint::UpperBound(_)) => {
-                format!("on its upper bound: {change} the bound by 1 dB")
+            (Quantity::Gain(_), bound) => {
+                let end = if matches!(bound, ActiveConstraint::LowerBound(_)) { "lower" } else { "upper" };
+                format!("on its {end} bound: {change} the bound by 1 dB")
             }
             (_, ActiveConstraint::Held(_)) => format!("held: 1 ms {} delay", if is_dear { "less" } else { "more" }),
             (Quantity::Delay, ActiveConstraint::LowerBound(_)) => "0: 1 ms of lead".to_owned(),

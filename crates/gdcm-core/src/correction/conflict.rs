@@ -86,12 +86,12 @@ impl Conflict {
         matches!(self.kind, ConflictKind::Loop { mismatch } if mismatch.abs() <= tolerance)
     }
 
-    /// By how much a loop of these entries disagrees, in words.
-    fn mismatch_words(&self, mismatch: f64) -> String {
+    /// What the entries of a loop agree or disagree in, and by how much, in words.
+    fn mismatch_words(&self, mismatch: f64) -> (&'static str, String) {
         if self.quantity.is_gain() {
-            format!("{} dB", telling(mismatch.abs(), 1))
+            ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
         } else {
-            format!("{} ms", telling(s_to_ms(mismatch.abs()), 1))
+            ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
         }
     }
 
@@ -99,7 +99,7 @@ impl Conflict {
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
         let ConflictKind::Loop { mismatch } = self.kind else { return String::new() };
         let entries = pair_names(&self.entries, inputs, outputs);
-        let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
+        let (what, mismatch) = self.mismatch_words(mismatch);
         format!(
             "{entries} form a loop: their {what} agree to {mismatch}, and count as agreeing; each is held at the nearest that does."
         )
@@ -115,7 +115,7 @@ impl Conflict {
         };
         match self.kind {
             ConflictKind::Loop { mismatch } => {
-                let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
+                let (what, mismatch) = self.mismatch_words(mismatch);
                 format!("{entries} form a loop: their {what} disagree by {mismatch}; {release}.")
             }
             ConflictKind::Unclear => format!("{entries} {cannot}; {release}."),
@@ -134,13 +134,16 @@ impl Conflict {
         let names = |(first, second): (Channel, Channel)| (name(first), name(second));
         let apart_ms = |limit_s: f64, asked_s: f64| told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1);
         let Bounds { lower: low, upper: high } = self.bounds;
+        let product = |channels, asked: f64, (sign, bound, end): (&str, f64, &str), (which, new): (&str, f64)| {
+            let ((first, second), (limit, asked)) = (names(channels), told_apart(bound.powi(2), asked, 3));
+            format!(
+                "with gains {sign} {bound:.3} the product {first} {second} is at {end} {limit}, not {asked}; set the {which} \
+                 bound to {new} or"
+            )
+        };
         match (self.kind, self.quantity) {
             (ConflictKind::AboveUpper { channels, asked, upper }, Quantity::Gain(_)) => {
-                let ((first, second), (most, asked)) = (names(channels), told_apart(high.powi(2), asked, 3));
-                format!(
-                    "with gains <= {high:.3} the product {first} {second} is at most {most}, not {asked}; set the upper \
-                     bound to {upper} or"
-                )
+                product(channels, asked, ("<=", high, "most"), ("upper", upper))
             }
             (ConflictKind::AboveUpper { channels, asked, upper }, delay) => {
                 let ((first, second), (most, asked)) = (names(channels), apart_ms(2.0 * high, asked));
@@ -151,12 +154,7 @@ impl Conflict {
                 )
             }
             (ConflictKind::BelowLower { channels, asked, lower }, Quantity::Gain(_)) => {
-                let ((first, second), (least, asked)) = (names(channels), told_apart(low.powi(2), asked, 3));
-                let lower = lower.unwrap_or(low);
-                format!(
-                    "with gains >= {low:.3} the product {first} {second} is at least {least}, not {asked}; set the lower \
-                     bound to {lower} or"
-                )
+                product(channels, asked, (">=", low, "least"), ("lower", lower.unwrap_or(low)))
             }
             (ConflictKind::BelowLower { channels, asked, .. }, Quantity::Delay) => {
                 let ((first, second), lead_ms) = (names(channels), telling(s_to_ms(-asked), 1));
@@ -420,7 +418,7 @@ impl Remedy {
 
     /// The remedies in words; empty where there is none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let unit = self.quantity.unit();
+        let unit = if self.quantity.is_gain() { "" } else { " s" };
         let upper = self.upper.map(|upper| format!("an upper bound of {upper}{unit}"));
         let lower = self.lower.map(|lower| format!("a lower bound of {lower}{unit}"));
         let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));

@@ -352,16 +352,6 @@ impl Quantity {
     pub(crate) fn symbol(self) -> &'static str {
         if self.is_gain() { "k" } else { "tau" }
     }
-
-    /// What of the entries of a loop agrees or disagrees.
-    pub(crate) fn looped(self) -> &'static str {
-        if self.is_gain() { "ratios" } else { "delays" }
-    }
-
-    /// What follows a bound in words.
-    pub(crate) fn unit(self) -> &'static str {
-        if self.is_gain() { "" } else { " s" }
-    }
 }
 
 impl fmt::Display for Quantity {

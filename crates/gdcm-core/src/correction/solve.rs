@@ -197,7 +197,7 @@ const MATCHED: f64 = 1e-8;
 pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) -> Result<Solution, ProblemError> {
     problem.check()?;
     let effort = Effort::new(stop);
-    let held = Held::of(problem);
+    let (held, coordinate) = (Held::of(problem), problem.coordinate());
     let reached = reach(&held, |nearest| minimise(nearest, problem.quantity, &effort))?;
     let objective = objective(problem, &reached.components);
     let start = start(&objective, problem.quantity)?;
@@ -205,7 +205,30 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
     for (scales, _) in &mut found.minima {
         settle(problem.quantity, &reached.components, &objective, scales);
     }
-    Ok(assemble(problem, &held, &reached, &found, &effort)?)
+    let proof = proof(problem, &reached.components, found);
+    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses(problem, &held, &reached, &effort)?
+        .into_iter()
+        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
+    let conflicts = conflicts_of(&unmatched);
+    let remedy = Remedy::new(problem, &settled_loops(&held, &reached, &agreeing), &conflicts, &effort)?;
+    let mut targets = PairTable::filled(held.outputs, held.inputs, None);
+    for (pair, target) in &reached.targets {
+        targets[*pair] = Some(coordinate.value(*target));
+    }
+    let LocalMinimum { inputs, outputs, objective } = proof.local_minima[0].clone();
+    Ok(Solution {
+        quantity: problem.quantity,
+        inputs,
+        outputs,
+        objective,
+        proof,
+        targets,
+        matched: unmatched.is_empty(),
+        agreeing: conflicts_of(&agreeing),
+        remedy,
+        unmatched,
+        conflicts,
+    })
 }
 
 /// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
@@ -269,55 +292,20 @@ fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (V
     (inputs.iter().map(value).collect(), outputs.iter().map(value).collect())
 }
 
-fn assemble(
-    problem: &Problem,
-    held: &Held,
-    reached: &Reached,
-    found: &Minima,
-    effort: &Effort<'_>,
-) -> Result<Solution, SearchStopped> {
-    let coordinate = problem.coordinate();
+/// What the search found, in gains or delays.
+fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
-        let (inputs, outputs) = channels_at(problem, &reached.components, scales);
+        let (inputs, outputs) = channels_at(problem, components, scales);
         let objective = problem.objective_at(&inputs, &outputs);
         LocalMinimum { inputs, outputs, objective }
     };
     let local_minima: Vec<LocalMinimum> = found.minima.iter().map(minimum).collect();
-    let LocalMinimum { inputs, outputs, objective } = local_minima[0].clone();
     let outcome = match found.limit {
         None => Outcome::Proven { gap: found.gap },
         Some(limit) => Outcome::NotProven { gap: found.gap, limit },
     };
-    let proof = Proof {
-        lower_bound: coordinate.objective(found.lower_bound).min(objective),
-        outcome,
-        nodes: found.nodes,
-        local_minima,
-        all_minima: found.all_minima,
-    };
-    let mut targets = PairTable::filled(held.outputs, held.inputs, None);
-    for (pair, target) in &reached.targets {
-        targets[*pair] = Some(coordinate.value(*target));
-    }
-    let misses = misses(problem, held, reached, effort)?;
-    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses
-        .into_iter()
-        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
-    let conflicts = conflicts_of(&unmatched);
-    let remedy = Remedy::new(problem, &settled_loops(held, reached, &agreeing), &conflicts, effort)?;
-    Ok(Solution {
-        quantity: problem.quantity,
-        inputs,
-        outputs,
-        objective,
-        proof,
-        targets,
-        matched: unmatched.is_empty(),
-        agreeing: conflicts_of(&agreeing),
-        remedy,
-        unmatched,
-        conflicts,
-    })
+    let lower_bound = problem.coordinate().objective(found.lower_bound).min(local_minima[0].objective);
+    Proof { lower_bound, outcome, nodes: found.nodes, local_minima, all_minima: found.all_minima }
 }
 
 /// The held entries that stage 1 could not match, each with what is in the way.
@@ -342,8 +330,8 @@ fn misses(
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
-        let in_coordinate = || quantity.difference(target_at - delta_at, coordinate);
-        let excess = if quantity.is_gain() { in_coordinate() } else { target - delta };
+        let excess =
+            if quantity.is_gain() { quantity.difference(target_at - delta_at, coordinate) } else { target - delta };
         Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
     });
     Ok(missed.collect())

@@ -12,7 +12,7 @@
 //!
 //! 14 CFR part 60, appendix C, table C2A. Integrals of body rates are attitudes for small angles only.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector3};
 use serde::{Deserialize, Serialize};
 
 use super::not_positive;
@@ -305,42 +305,23 @@ pub struct ToleranceCheck {
     pub largest_excess: f64,
     /// When that is \[s\].
     pub largest_excess_at_s: f64,
-    trend: Moments,
+    /// The [`moments`] of its samples.
+    trend: Vector3<f64>,
 }
 
-/// Sums about the means: what a correlation is made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Moments {
-    flown: f64,
-    simulated: f64,
-    product: f64,
+/// What a correlation is made of: the sums of the squares of flown and of simulated samples about their means, and of their products.
+fn moments(flown: &[f64], simulated: &[f64]) -> Vector3<f64> {
+    let (flown_mean, simulated_mean) = (mean(flown), mean(simulated));
+    let of_sample = |(flown, simulated): (&f64, &f64)| {
+        let (flown, simulated) = (flown - flown_mean, simulated - simulated_mean);
+        Vector3::new(flown * flown, simulated * simulated, flown * simulated)
+    };
+    flown.iter().zip(simulated).map(of_sample).sum()
 }
 
-impl Moments {
-    fn of(flown: &[f64], simulated: &[f64]) -> Self {
-        let (flown_mean, simulated_mean) = (mean(flown), mean(simulated));
-        let mut moments = Self::default();
-        for (flown, simulated) in flown.iter().zip(simulated) {
-            let (flown, simulated) = (flown - flown_mean, simulated - simulated_mean);
-            moments.flown += flown * flown;
-            moments.simulated += simulated * simulated;
-            moments.product += flown * simulated;
-        }
-        moments
-    }
-
-    fn plus(self, other: Self) -> Self {
-        Self {
-            flown: self.flown + other.flown,
-            simulated: self.simulated + other.simulated,
-            product: self.product + other.product,
-        }
-    }
-
-    fn correlation(self) -> Option<f64> {
-        let scale = self.flown.sqrt() * self.simulated.sqrt();
-        (scale > 0.0).then(|| self.product / scale)
-    }
+fn correlation(moments: Vector3<f64>) -> Option<f64> {
+    let scale = moments.x.sqrt() * moments.y.sqrt();
+    (scale > 0.0).then(|| moments.z / scale)
 }
 
 impl ToleranceCheck {
@@ -382,7 +363,7 @@ impl ToleranceCheck {
             inside: excess.iter().filter(|excess| **excess <= 0.0).count(),
             largest_excess,
             largest_excess_at_s: start_s + sample_time_s * largest as f64,
-            trend: Moments::of(&flown, &simulated),
+            trend: moments(&flown, &simulated),
             flown,
             simulated,
             width,
@@ -402,7 +383,7 @@ impl ToleranceCheck {
     /// Correlation of simulated and flown about their means; none where one of them does not move. Off the axis its sign is the
     /// trend that is asked for: correct where it is positive.
     pub fn correlation(&self) -> Option<f64> {
-        self.trend.correlation()
+        correlation(self.trend)
     }
 
     /// The parts of time \[s\] in which samples are outside: from the first to the last of each.
@@ -479,7 +460,7 @@ impl RecordCheck {
 
     /// Correlation of simulated and flown, each about its mean in its window; none where one of them does not move.
     pub fn correlation(&self) -> Option<f64> {
-        self.windows.iter().map(|window| window.trend).fold(Moments::default(), Moments::plus).correlation()
+        correlation(self.windows.iter().map(|window| window.trend).sum())
     }
 }
 

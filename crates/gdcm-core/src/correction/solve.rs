@@ -2,7 +2,6 @@
 //! delays found, and how sure they are.
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
-use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::dataset::{Pair, PairTable};
@@ -380,10 +379,15 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
 
 /// `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay where they are.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
-    let size = free.len();
-    let (curvature, slope) = quadratic(objective, free);
-    let row = |row: usize| (0..size).map(move |column| (row, column));
-    let quadratic = CscMatrix::from((0..size).map(|at| row(at).map(|at| &curvature[at]))).to_triu();
+    let (size, scales) = (free.len(), objective.scales());
+    // Slope and curvature where the free scales are 0: the objective is a sum of squares.
+    let mut origin = objective.lower.clone();
+    free.iter().for_each(|&index| origin[index] = 0.0);
+    let mut at = Expansion::zero(scales);
+    objective.expand(&origin, Curvature::True, &mut at);
+    let slope: Vec<f64> = free.iter().map(|&index| at.gradient[index]).collect();
+    let row = |row: usize| free.iter().map(move |column| row * scales + column);
+    let quadratic = CscMatrix::from(free.iter().map(|&index| row(index).map(|entry| &at.hessian[entry]))).to_triu();
     let columns = (0..=size).map(|column| 2 * column).collect();
     let rows = (0..size).flat_map(|column| [column, size + column]).collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
@@ -392,35 +396,5 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         free.iter().map(|&index| objective.upper[index]).chain(free.iter().map(|&index| -objective.lower[index]));
     let ends: Vec<f64> = ends.collect();
     let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
-    convex_program(&quadratic, slope.as_slice(), &sides, &ends, settings)
-        .map_err(|reason| ProblemError::Program { reason })
-}
-
-/// Curvature and slope at 0 of the objective over the free scales.
-fn quadratic(objective: &Objective, free: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
-    let mut curvature = DMatrix::zeros(free.len(), free.len());
-    let mut slope = DVector::zeros(free.len());
-    let place = |index: usize| free.iter().position(|&candidate| candidate == index);
-    for term in &objective.terms {
-        let Function::Quadratic { weight, centre, .. } = term.function else {
-            continue;
-        };
-        let ends = [(place(term.to), term.to, 1.0), (place(term.from), term.from, -1.0)];
-        // What the ends that do not move leave to be met.
-        let fixed: f64 = ends
-            .iter()
-            .filter(|(place, ..)| place.is_none())
-            .map(|(_, index, sign)| sign * objective.lower[*index])
-            .sum();
-        for (row, _, sign) in ends {
-            let Some(row) = row else { continue };
-            slope[row] += 2.0 * weight * sign * (fixed - centre.value);
-            for (column, _, other) in ends {
-                if let Some(column) = column {
-                    curvature[(row, column)] += 2.0 * weight * sign * other;
-                }
-            }
-        }
-    }
-    (curvature, slope)
+    convex_program(&quadratic, &slope, &sides, &ends, settings).map_err(|reason| ProblemError::Program { reason })
 }

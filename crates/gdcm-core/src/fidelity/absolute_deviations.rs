@@ -66,14 +66,16 @@ fn best_vertex(fit: &Fit<'_>, start: Vertex, cancelled: &dyn Fn() -> bool) -> Re
         if cancelled() {
             return Err(FitError::Cancelled);
         }
-        let neighbours = equal[next].neighbours(fit);
-        if let Some(better) = neighbours.better {
-            best = better.clone();
-            equal = vec![better];
-            next = 0;
-            continue;
-        }
-        for vertex in neighbours.equal {
+        let equally_good = match equal[next].neighbours(fit) {
+            Neighbours::Better(better) => {
+                best = better.clone();
+                equal = vec![better];
+                next = 0;
+                continue;
+            }
+            Neighbours::Equal(vertices) => vertices,
+        };
+        for vertex in equally_good {
             if !equal.iter().any(|known| known.is_at(&vertex)) {
                 if misfit(&vertex) < misfit(&best) {
                     best = vertex.clone();
@@ -145,11 +147,11 @@ struct Vertex {
 }
 
 /// Where the edges of a vertex lead.
-struct Neighbours {
-    /// The end of an edge along which the deviations become less.
-    better: Option<Vertex>,
-    /// The ends of the edges along which they stay the same.
-    equal: Vec<Vertex>,
+enum Neighbours {
+    /// To the end of an edge along which the deviations become less.
+    Better(Vertex),
+    /// To the ends of the edges along which they stay the same.
+    Equal(Vec<Vertex>),
 }
 
 impl<'a> Fit<'a> {
@@ -309,18 +311,14 @@ impl Vertex {
         let deviations = self.all_deviations(fit);
         let mut edges = self.edges(fit, &deviations);
         edges.sort_by(|a, b| a.relative_slope().total_cmp(&b.relative_slope()));
-        let mut neighbours = Neighbours { better: None, equal: Vec::new() };
+        let mut equal = Vec::new();
         for edge in edges.iter().filter(|edge| edge.relative_slope() <= FLAT) {
-            let Some(end) = self.end_of_edge(fit, edge, &deviations) else {
-                continue;
-            };
-            if edge.relative_slope() < -FLAT {
-                neighbours.better = Some(end);
-                return neighbours;
+            match self.end_of_edge(fit, edge, &deviations) {
+                Some(end) if edge.relative_slope() < -FLAT => return Neighbours::Better(end),
+                end => equal.extend(end),
             }
-            neighbours.equal.push(end);
         }
-        neighbours
+        Neighbours::Equal(equal)
     }
 
     /// The edges that leave this vertex: one constraint is given up, to either side; a weight only upwards.

@@ -158,8 +158,6 @@ pub(crate) struct Newton {
     pub(crate) reached: Expansion,
     trial: Expansion,
     model: QuadraticModel,
-    low: Vec<f64>,
-    high: Vec<f64>,
     next: Vec<f64>,
 }
 
@@ -170,8 +168,6 @@ impl Newton {
             reached: Expansion::zero(scales),
             trial: Expansion::zero(scales),
             model: QuadraticModel::new(scales),
-            low: vec![0.0; scales],
-            high: vec![0.0; scales],
             next: vec![0.0; scales],
         }
     }
@@ -195,8 +191,8 @@ impl Newton {
                 return;
             }
             for scale in 0..scales.len() {
-                self.low[scale] = lower[scale] - scales[scale];
-                self.high[scale] = upper[scale] - scales[scale];
+                self.model.low[scale] = lower[scale] - scales[scale];
+                self.model.high[scale] = upper[scale] - scales[scale];
             }
             let Some((decrease, true_curvature)) = self.minimise_model(function, scales, effort) else {
                 return;
@@ -218,12 +214,11 @@ impl Newton {
         scales: &[f64],
         effort: &Effort<'_>,
     ) -> Option<(f64, bool)> {
-        let Self { reached, model, low, high, .. } = self;
-        if let Some(decrease) = model.minimise(&reached.gradient, &reached.hessian, (low, high), effort) {
+        if let Some(decrease) = self.model.minimise(&self.reached, effort) {
             return Some((decrease, true));
         }
-        expand(function, scales, Curvature::Magnitude, reached, effort);
-        Some((model.minimise(&reached.gradient, &reached.hessian, (low, high), effort)?, false))
+        expand(function, scales, Curvature::Magnitude, &mut self.reached, effort);
+        Some((self.model.minimise(&self.reached, effort)?, false))
     }
 
     /// Takes the longest of the step's halvings that goes down; `false` where none does, or where the step is nothing.
@@ -260,9 +255,9 @@ impl Newton {
     fn place(&mut self, fraction: f64, (lower, upper): (&[f64], &[f64]), scales: &[f64]) {
         for scale in 0..scales.len() {
             let step = self.model.step[scale];
-            self.next[scale] = if fraction == 1.0 && step == self.low[scale] {
+            self.next[scale] = if fraction == 1.0 && step == self.model.low[scale] {
                 lower[scale]
-            } else if fraction == 1.0 && step == self.high[scale] {
+            } else if fraction == 1.0 && step == self.model.high[scale] {
                 upper[scale]
             } else {
                 (scales[scale] + fraction * step).clamp(lower[scale], upper[scale])
@@ -286,6 +281,10 @@ fn expand(
 #[derive(Clone, Debug)]
 struct QuadraticModel {
     scales: usize,
+    /// Least step of each scale, at most 0.
+    low: Vec<f64>,
+    /// Greatest step of each scale, at least 0.
+    high: Vec<f64>,
     /// The step found.
     step: Vec<f64>,
     slope: Vec<f64>,
@@ -300,6 +299,8 @@ impl QuadraticModel {
     fn new(scales: usize) -> Self {
         Self {
             scales,
+            low: vec![0.0; scales],
+            high: vec![0.0; scales],
             step: vec![0.0; scales],
             slope: vec![0.0; scales],
             free: Vec::with_capacity(scales),
@@ -309,23 +310,19 @@ impl QuadraticModel {
         }
     }
 
-    /// Minimises `g d + d H d / 2` over `low <= d <= high` (which hold 0) by a primal active-set method: exact, finite.
+    /// Minimises `g d + d H d / 2`, of gradient and Hessian at a point, over `low <= d <= high` by a primal active-set method: exact,
+    /// finite.
     ///
     /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite on a face that the method visits. Nodes with
     /// `low == high` stay.
-    fn minimise(
-        &mut self,
-        gradient: &[f64],
-        hessian: &[f64],
-        (low, high): (&[f64], &[f64]),
-        effort: &Effort<'_>,
-    ) -> Option<f64> {
+    fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
+        let (gradient, hessian) = (&at.gradient, &at.hessian);
         self.step.fill(0.0);
         self.slope.copy_from_slice(gradient);
         for scale in 0..self.scales {
             let slope = gradient[scale];
-            let stopped = (low[scale] >= 0.0 && slope >= 0.0) || (high[scale] <= 0.0 && slope <= 0.0);
-            self.is_free[scale] = low[scale] < high[scale] && !stopped;
+            let stopped = (self.low[scale] >= 0.0 && slope >= 0.0) || (self.high[scale] <= 0.0 && slope <= 0.0);
+            self.is_free[scale] = self.low[scale] < self.high[scale] && !stopped;
         }
         let ridge = 1e-12 * (0..self.scales).map(|scale| hessian[scale * self.scales + scale]).fold(0.0, f64::max);
         // Each pass adds a stop or releases one after a decrease; 8 n passes are far above what is ever needed.
@@ -335,7 +332,7 @@ impl QuadraticModel {
                 return None;
             }
             self.solve_free(hessian, ridge)?;
-            let (fraction, blocking) = self.longest_step(low, high);
+            let (fraction, blocking) = self.longest_step();
             for &scale in &self.free {
                 self.step[scale] += fraction * self.move_to[scale];
             }
@@ -343,7 +340,7 @@ impl QuadraticModel {
             if let Some((scale, end)) = blocking {
                 self.step[scale] = end;
                 self.is_free[scale] = false;
-            } else if let Some(scale) = self.worst_stop(low, high) {
+            } else if let Some(scale) = self.worst_stop() {
                 self.is_free[scale] = true;
             } else {
                 break;
@@ -404,15 +401,15 @@ impl QuadraticModel {
     }
 
     /// The fraction of the move that the box allows, with the scale that stops it and where.
-    fn longest_step(&self, low: &[f64], high: &[f64]) -> (f64, Option<(usize, f64)>) {
+    fn longest_step(&self) -> (f64, Option<(usize, f64)>) {
         let mut fraction = 1.0;
         let mut blocking = None;
         for &scale in &self.free {
             let target = self.step[scale] + self.move_to[scale];
-            let end = if target < low[scale] {
-                low[scale]
-            } else if target > high[scale] {
-                high[scale]
+            let end = if target < self.low[scale] {
+                self.low[scale]
+            } else if target > self.high[scale] {
+                self.high[scale]
             } else {
                 continue;
             };
@@ -433,15 +430,15 @@ impl QuadraticModel {
     }
 
     /// The stopped scale whose release helps most, or `None` at the minimum.
-    fn worst_stop(&self, low: &[f64], high: &[f64]) -> Option<usize> {
+    fn worst_stop(&self) -> Option<usize> {
         let scale = self.slope.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
         let mut worst = None;
         let mut greatest = 1e-14 * scale;
         for scale in 0..self.scales {
-            if self.is_free[scale] || low[scale] >= high[scale] {
+            if self.is_free[scale] || self.low[scale] >= self.high[scale] {
                 continue;
             }
-            let inward = if self.step[scale] <= low[scale] { -self.slope[scale] } else { self.slope[scale] };
+            let inward = if self.step[scale] <= self.low[scale] { -self.slope[scale] } else { self.slope[scale] };
             if inward > greatest {
                 greatest = inward;
                 worst = Some(scale);

@@ -1,8 +1,11 @@
-//! The channels of a correction: which there are, what they are called, and something of each.
+//! The channels of a correction: which there are, what they are called, something of each; and one gain and one delay or lead for each
+//! (M10, M11, M15), with what they make of a response.
 
 use std::ops::Index;
 
+use super::ChannelLeads;
 use crate::dataset::Pair;
+use crate::response::{GainDelay, LeadFilter};
 
 /// One channel: an input or an output, each with a gain and a delay of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -109,5 +112,89 @@ impl<T> Index<Channel> for Channels<T> {
             Channel::Input(input) => &self.inputs[input],
             Channel::Output(output) => &self.outputs[output],
         }
+    }
+}
+
+/// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12), or `k L(s)` (M15).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelCorrection {
+    /// Gain of each input channel, m values.
+    pub input_gains: Vec<f64>,
+    /// Gain of each output channel, p values.
+    pub output_gains: Vec<f64>,
+    /// Delay of each input channel \[s\], m values.
+    pub input_delays_s: Vec<f64>,
+    /// Delay of each output channel \[s\], p values.
+    pub output_delays_s: Vec<f64>,
+    /// Signed delays, of which the delays above are the positive part, and the filters of the negative ones; none where leads are
+    /// not asked for (M15).
+    pub leads: Option<ChannelLeads>,
+}
+
+impl ChannelCorrection {
+    /// Net gain of a response, `k_o k_i` (M11).
+    pub fn net_gain(&self, pair: Pair) -> f64 {
+        self.output_gains[pair.output] * self.input_gains[pair.input]
+    }
+
+    /// Net delay of a response, `tau_o + tau_i` \[s\]; a negative one is a lead (M15).
+    pub fn net_delay_s(&self, pair: Pair) -> f64 {
+        let [output_s, input_s] = Channel::of(pair).map(|channel| self.delay_s(channel));
+        output_s + input_s
+    }
+
+    /// Gain of a channel.
+    pub fn gain(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_gains[input],
+            Channel::Output(output) => self.output_gains[output],
+        }
+    }
+
+    /// Delay of a channel \[s\]; a negative one is a lead (M15).
+    pub fn delay_s(&self, channel: Channel) -> f64 {
+        self.leads.as_ref().map_or_else(|| self.pure_delay_s(channel), |leads| leads.taus_s[channel])
+    }
+
+    /// Delay of a channel without its lead \[s\].
+    pub fn pure_delay_s(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_delays_s[input],
+            Channel::Output(output) => self.output_delays_s[output],
+        }
+    }
+
+    /// Delay of each channel \[s\]; a negative one is a lead (M15).
+    pub fn signed_delays_s(&self) -> Channels<f64> {
+        self.channels(|channel| self.delay_s(channel))
+    }
+
+    /// What `of` says of each channel.
+    pub fn channels<T>(&self, of: impl FnMut(Channel) -> T) -> Channels<T> {
+        Channels::from_fn(self.input_gains.len(), self.output_gains.len(), of)
+    }
+
+    /// The lead filter of a channel, where it has one (M15).
+    pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
+        self.leads.as_ref()?.filters()[channel]
+    }
+
+    /// The same without its lead filters: its gains and what is positive of its delays.
+    pub fn without_leads(self) -> Self {
+        Self { leads: None, ..self }
+    }
+
+    /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give
+    /// that).
+    pub fn on(&self, pair: Pair) -> Option<GainDelay> {
+        let leads = Channel::of(pair).map(|channel| self.lead(channel));
+        Some(self.without_leads_on(pair)?.led(leads))
+    }
+
+    /// As [`ChannelCorrection::on`], without the lead filters: what is left to do where those have done their part.
+    pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
+        let gain = self.net_gain(pair);
+        let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];
+        (gain > 0.0).then(|| GainDelay::new(gain, delay_s))
     }
 }

@@ -1,6 +1,6 @@
-//! Why held entries cannot all be held: which of them and which bounds are in each other's way.
+//! Why held entries cannot all be held: which of them and which bounds are in each other's way, and what would let all be held.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use super::*;
 use crate::dataset::Pair;
@@ -86,12 +86,12 @@ impl Conflict {
         matches!(self.kind, ConflictKind::Loop { mismatch } if mismatch.abs() <= tolerance)
     }
 
-    /// By how much a loop of these entries disagrees, in words.
-    fn mismatch_words(&self, mismatch: f64) -> String {
+    /// What the entries of a loop agree or disagree in, and by how much, in words.
+    fn mismatch_words(&self, mismatch: f64) -> (&'static str, String) {
         if self.quantity.is_gain() {
-            format!("{} dB", telling(mismatch.abs(), 1))
+            ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
         } else {
-            format!("{} ms", telling(s_to_ms(mismatch.abs()), 1))
+            ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
         }
     }
 
@@ -99,7 +99,7 @@ impl Conflict {
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
         let ConflictKind::Loop { mismatch } = self.kind else { return String::new() };
         let entries = pair_names(&self.entries, inputs, outputs);
-        let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
+        let (what, mismatch) = self.mismatch_words(mismatch);
         format!(
             "{entries} form a loop: their {what} agree to {mismatch}, and count as agreeing; each is held at the nearest that does."
         )
@@ -115,7 +115,7 @@ impl Conflict {
         };
         match self.kind {
             ConflictKind::Loop { mismatch } => {
-                let (what, mismatch) = (self.quantity.looped(), self.mismatch_words(mismatch));
+                let (what, mismatch) = self.mismatch_words(mismatch);
                 format!("{entries} form a loop: their {what} disagree by {mismatch}; {release}.")
             }
             ConflictKind::Unclear => format!("{entries} {cannot}; {release}."),
@@ -134,13 +134,16 @@ impl Conflict {
         let names = |(first, second): (Channel, Channel)| (name(first), name(second));
         let apart_ms = |limit_s: f64, asked_s: f64| told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1);
         let Bounds { lower: low, upper: high } = self.bounds;
+        let product = |channels, asked: f64, (sign, bound, end): (&str, f64, &str), (which, new): (&str, f64)| {
+            let ((first, second), (limit, asked)) = (names(channels), told_apart(bound.powi(2), asked, 3));
+            format!(
+                "with gains {sign} {bound:.3} the product {first} {second} is at {end} {limit}, not {asked}; set the {which} \
+                 bound to {new} or"
+            )
+        };
         match (self.kind, self.quantity) {
             (ConflictKind::AboveUpper { channels, asked, upper }, Quantity::Gain(_)) => {
-                let ((first, second), (most, asked)) = (names(channels), told_apart(high.powi(2), asked, 3));
-                format!(
-                    "with gains <= {high:.3} the product {first} {second} is at most {most}, not {asked}; set the upper \
-                     bound to {upper} or"
-                )
+                product(channels, asked, ("<=", high, "most"), ("upper", upper))
             }
             (ConflictKind::AboveUpper { channels, asked, upper }, delay) => {
                 let ((first, second), (most, asked)) = (names(channels), apart_ms(2.0 * high, asked));
@@ -151,12 +154,7 @@ impl Conflict {
                 )
             }
             (ConflictKind::BelowLower { channels, asked, lower }, Quantity::Gain(_)) => {
-                let ((first, second), (least, asked)) = (names(channels), told_apart(low.powi(2), asked, 3));
-                let lower = lower.unwrap_or(low);
-                format!(
-                    "with gains >= {low:.3} the product {first} {second} is at least {least}, not {asked}; set the lower \
-                     bound to {lower} or"
-                )
+                product(channels, asked, (">=", low, "least"), ("lower", lower.unwrap_or(low)))
             }
             (ConflictKind::BelowLower { channels, asked, .. }, Quantity::Delay) => {
                 let ((first, second), lead_ms) = (names(channels), telling(s_to_ms(-asked), 1));
@@ -228,7 +226,7 @@ pub(crate) fn clashes(
     let mut clashes = Vec::new();
     for pull in flow.pulls.iter().filter(missed) {
         // Three searches over every pull of every channel.
-        effort.spend((flow.pulls.len() * flow.at_lower.len()) as u64 / 8);
+        effort.spend((flow.pulls.len() * held.nodes()) as u64 / 8);
         effort.check()?;
         clashes.extend(flow.smallest_through(pull).map(|clash| (pull.pair, clash)));
     }
@@ -237,34 +235,30 @@ pub(crate) fn clashes(
 
 struct Flow<'a> {
     problem: &'a Problem,
-    inputs: usize,
-    range: (f64, f64),
+    held: &'a Held,
     pulls: Vec<Pull>,
     at_lower: Vec<bool>,
     at_upper: Vec<bool>,
 }
 
 impl<'a> Flow<'a> {
-    fn new(problem: &'a Problem, held: &Held, reached: &Reached, point: &[f64]) -> Self {
-        let nodes = held.inputs + held.outputs;
-        let (inputs, range) = (held.inputs, held.range);
-        let mut flow = Self { problem, inputs, range, pulls: Vec::new(), at_lower: vec![], at_upper: vec![] };
-        let mut net = vec![0.0; nodes];
-        for ((pair, delta), (_, target)) in held.entries.iter().zip(&reached.targets) {
-            let (input, output) = (pair.input, held.inputs + pair.output);
+    fn new(problem: &'a Problem, held: &'a Held, reached: &Reached, point: &[f64]) -> Self {
+        let (mut pulls, mut net) = (Vec::new(), vec![0.0; held.nodes()]);
+        for (&(pair, delta), (_, target)) in held.entries.iter().zip(&reached.targets) {
+            let (input, output) = held.nodes_of(pair);
             let missing = delta - target;
             // Below this a miss is the rounding of stage 1.
             if missing.abs() <= 1e-11 * (1.0 + delta.abs()) {
                 continue;
             }
-            let (from, to, weight) = if missing > 0.0 { (output, input, *delta) } else { (input, output, -delta) };
+            let (from, to, weight) = if missing > 0.0 { (output, input, delta) } else { (input, output, -delta) };
             net[from] -= missing.abs();
             net[to] += missing.abs();
-            flow.pulls.push(Pull { from, to, weight, pair: *pair });
+            pulls.push(Pull { from, to, weight, pair });
         }
-        flow.at_lower = (0..nodes).map(|node| point[node] <= flow.ends(node).0 && net[node] < 0.0).collect();
-        flow.at_upper = (0..nodes).map(|node| point[node] >= flow.ends(node).1 && net[node] > 0.0).collect();
-        flow
+        let at_lower = (0..net.len()).map(|node| point[node] <= held.ends(node).0 && net[node] < 0.0).collect();
+        let at_upper = (0..net.len()).map(|node| point[node] >= held.ends(node).1 && net[node] > 0.0).collect();
+        Self { problem, held, pulls, at_lower, at_upper }
     }
 
     /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
@@ -314,13 +308,7 @@ impl<'a> Flow<'a> {
             return false;
         };
         let needed: f64 = run.iter().map(|pull| pull.weight).sum();
-        needed - (self.ends(last.to).1 - self.ends(first.from).0) > STRAIN
-    }
-
-    /// Least and greatest value of a node: an output's is minus its channel's.
-    fn ends(&self, node: usize) -> (f64, f64) {
-        let (low, high) = self.range;
-        if node < self.inputs { (low, high) } else { (-high, -low) }
+        needed - (self.held.ends(last.to).1 - self.held.ends(first.from).0) > STRAIN
     }
 
     /// The clash of a path from a node at its least value to one at its greatest.
@@ -353,12 +341,13 @@ impl<'a> Flow<'a> {
     }
 
     fn channel(&self, node: usize) -> Channel {
-        if node < self.inputs { Channel::Input(node) } else { Channel::Output(node - self.inputs) }
+        let inputs = self.held.inputs;
+        if node < inputs { Channel::Input(node) } else { Channel::Output(node - inputs) }
     }
 
     /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
     fn shortest(&self, start: usize, ends: impl Fn(usize) -> bool, against: bool) -> Option<Vec<Pull>> {
-        let mut came_by: Vec<Option<Pull>> = vec![None; self.at_lower.len()];
+        let mut came_by: Vec<Option<Pull>> = vec![None; self.held.nodes()];
         let mut queue = VecDeque::from([start]);
         while let Some(node) = queue.pop_front() {
             if ends(node) {
@@ -382,4 +371,88 @@ impl<'a> Flow<'a> {
         }
         None
     }
+}
+
+/// Single changes after which every held entry can be held at its delta; empty where it takes several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Remedy {
+    /// What is held: gains, or delays in seconds.
+    pub quantity: Quantity,
+    /// Least upper bound that does, the lower one as it is, rounded up to three digits.
+    pub upper: Option<f64>,
+    /// Greatest lower bound that does, the upper one as it is, rounded down to three digits; none for delays.
+    pub lower: Option<f64>,
+    /// The held entries of which each, freed alone, does.
+    pub free: Vec<Pair>,
+}
+
+impl Remedy {
+    /// The remedy for `held`, the held entries of `problem` that have these conflicts; none where there is no conflict.
+    pub(crate) fn new(
+        problem: &Problem,
+        held: &Held,
+        conflicts: &[Conflict],
+        effort: &Effort<'_>,
+    ) -> Result<Option<Self>, SearchStopped> {
+        if conflicts.is_empty() {
+            return Ok(None);
+        }
+        let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+        let suspects: BTreeSet<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
+        let mut free = Vec::new();
+        for pair in suspects {
+            // Each channel is placed by a walk along the held entries.
+            effort.spend((held.nodes() * held.entries.len()) as u64 / 8);
+            effort.check()?;
+            let others = held.entries.iter().filter(|(other, _)| *other != pair).copied().collect();
+            if Components::new(&Held { entries: others, ..*held }).are_possible() {
+                free.push(pair);
+            }
+        }
+        let [lower, upper] = range_that_does(held);
+        // A bound that is not the obstacle stays as it is.
+        let upper = upper.map(|upper| three_digits_up(coordinate.value(upper)).max(problem.bounds.upper));
+        let lower = lower.map(|lower| three_digits_down(coordinate.value(lower)).min(problem.bounds.lower));
+        Ok(Some(Self { quantity, upper, lower: lower.filter(|_| quantity.has_lower_bound()), free }))
+    }
+
+    /// The remedies in words; empty where there is none.
+    pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
+        let unit = if self.quantity.is_gain() { "" } else { " s" };
+        let upper = self.upper.map(|upper| format!("an upper bound of {upper}{unit}"));
+        let lower = self.lower.map(|lower| format!("a lower bound of {lower}{unit}"));
+        let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
+        let ways: Vec<String> = upper.into_iter().chain(lower).chain(free).collect();
+        if ways.is_empty() { String::new() } else { format!("Any one of these lets all be held: {}.", ways.join("; ")) }
+    }
+}
+
+/// The greatest lower and the least upper end of every channel's range that would do, each with the other as it is, in coordinates; none
+/// where a loop of held entries does not lead back to where it began.
+fn range_that_does(held: &Held) -> [Option<f64>; 2] {
+    let ((low, high), components) = (held.range, Components::new(held));
+    if !held.entries.iter().all(|&(pair, sum)| (components.sum(pair) - sum).abs() <= STRAIN) {
+        return [None; 2];
+    }
+    let (inputs, outputs) = components.sides();
+    let (mut widest, mut lowest, mut highest) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+    for component in 0..components.count() {
+        // A component without inputs or outputs is a single channel, which is always possible.
+        let ends = ends_of(inputs, component).zip(ends_of(outputs, component));
+        let Some(((least_input, most_input), (least_output, most_output))) = ends else { continue };
+        widest = widest.max((most_input - least_input).max(most_output - least_output));
+        lowest = lowest.min(0.5 * (least_input - most_output));
+        highest = highest.max(0.5 * (most_input - least_output));
+    }
+    let rounding = 1e-12 * (1.0 + low.abs() + high.abs());
+    [
+        (highest <= high + rounding).then(|| low.min(high - widest).min(lowest)),
+        (lowest >= low - rounding).then(|| high.max(low + widest).max(highest)),
+    ]
+}
+
+/// Least and greatest offset of the nodes of one component.
+fn ends_of(nodes: &[Placement], component: usize) -> Option<(f64, f64)> {
+    let offsets = nodes.iter().filter(|node| node.component == component).map(|node| node.offset.value);
+    offsets.clone().reduce(f64::min).zip(offsets.reduce(f64::max))
 }

@@ -2,10 +2,10 @@
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
-use super::{Channel, ChannelCorrection, ChannelModel, Channels};
+use super::{Channel, ChannelCorrection, Channels};
 use crate::dataset::limits::MOST_STATES;
 use crate::dataset::{StateSpace, StateSpaceError, Timing};
-use crate::response::LeadFilter;
+use crate::response::{LeadFilter, LeadOrder};
 use crate::units::number;
 
 /// How far a delay may lie from a whole number of samples: parts of one. Delays that were computed are rounded.
@@ -155,7 +155,7 @@ fn delay_model(
     pade: Pade,
 ) -> Result<ChannelModel, CorrectedModelError> {
     let Some(sample_time_s) = sample_time_s else {
-        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { ChannelModel::none() });
+        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { ChannelModel::samples(0) });
     };
     let samples = (delay_s / sample_time_s).round();
     if (delay_s / sample_time_s - samples).abs() > SAMPLE_TOLERANCE {
@@ -171,9 +171,9 @@ fn delay_model(
 /// The lead filter of a channel as states.
 fn lead_model(filter: Option<LeadFilter>, sample_time_s: Option<f64>) -> Result<ChannelModel, CorrectedModelError> {
     let (Some(filter), Some(sample_time_s)) = (filter, sample_time_s) else {
-        return Ok(filter.map_or_else(ChannelModel::none, ChannelModel::lead));
+        return Ok(filter.map_or_else(|| ChannelModel::samples(0), ChannelModel::lead));
     };
-    let longest_s = 0.5 * filter.lag_s();
+    let longest_s = 0.5 * filter.lag_s;
     let sampled = ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
     sampled.ok_or(CorrectedModelError::SlowSamples { sample_time_s, longest_s })
 }
@@ -321,14 +321,74 @@ impl Pade {
     }
 }
 
+/// A delay or a lead filter of one channel as a state-space model of one input and one output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelModel {
+    /// System matrix, n x n.
+    pub a: DMatrix<f64>,
+    /// Input column, n values.
+    pub b: DVector<f64>,
+    /// Output row, n values.
+    pub c: RowDVector<f64>,
+    /// Feed-through.
+    pub d: f64,
+}
+
+impl ChannelModel {
+    /// `z^-count`, exactly: `count` states, each of which holds the one before it for one sample. Of no sample it is `y = u`.
+    pub fn samples(count: usize) -> Self {
+        Self {
+            a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
+            b: DVector::from_fn(count, |row, _| f64::from(row == 0)),
+            c: RowDVector::from_fn(count, |_, column| f64::from(column + 1 == count)),
+            d: f64::from(count == 0),
+        }
+    }
+
+    /// A lead filter in continuous time, exactly (M15.3): with `w1 = 1 / a`, `w2 = 1 / b` of second order `A = [0 1; -w2^2 -sqrt(2)
+    /// w2]`, `B = [0; 1]`, `C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)]`, `D = R`, of first order `A = -w2`, `B = 1`, `C = R (w1 -
+    /// w2)`, `D = R`.
+    pub fn lead(filter: LeadFilter) -> Self {
+        const ROOT: f64 = std::f64::consts::SQRT_2;
+        let (w1, w2, r) = (filter.zero_rad_s(), filter.lag_rad_s(), filter.gain_at_infinity());
+        match filter.order {
+            LeadOrder::First => Self {
+                a: DMatrix::from_element(1, 1, -w2),
+                b: DVector::from_element(1, 1.0),
+                c: RowDVector::from_element(1, r * (w1 - w2)),
+                d: r,
+            },
+            LeadOrder::Second => Self {
+                a: DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -w2 * w2, -ROOT * w2]),
+                b: DVector::from_column_slice(&[0.0, 1.0]),
+                c: RowDVector::from_row_slice(&[r * (w1 * w1 - w2 * w2), r * ROOT * (w1 - w2)]),
+                d: r,
+            },
+        }
+    }
+
+    /// The lead filter in discrete time of this sample time \[s\], by Tustin's rule `s = 2 (z - 1) / (T (z + 1))`: with `M = (I - A
+    /// T/2)^-1` it is `M (I + A T/2)`, `T M B`, `C M`, `D + C M B T/2`. None where `T` puts a pole of the filter on that of the rule.
+    pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
+        let Self { a, b, c, d } = Self::lead(filter);
+        let (one, half) = (DMatrix::identity(a.nrows(), a.nrows()), 0.5 * sample_time_s * &a);
+        let inverse = (&one - &half).try_inverse()?;
+        let direct = (&c * &inverse * &b).sum() * 0.5 * sample_time_s;
+        Some(Self { a: &inverse * (&one + &half), b: sample_time_s * &inverse * b, c: &c * inverse, d: d + direct })
+    }
+
+    /// Number of states.
+    pub fn order(&self) -> usize {
+        self.b.len()
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use nalgebra::Complex;
-
     use super::*;
     use crate::correction::{ChannelLeads, LeadDesign, LeadSettings};
     use crate::dataset::{Band, Dynamics, Pair};
-    use crate::response::{FrequencyGrid, LeadOrder, PreparedModel};
+    use crate::response::{FrequencyGrid, PreparedModel};
 
     /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
     fn plant() -> StateSpace {
@@ -470,11 +530,6 @@ mod tests {
         let refused = CorrectedModel::of(&sampled(0.02), &correction, Pade::default()).unwrap_err();
         assert!(matches!(refused, CorrectedModelError::SlowSamples { .. }), "{refused}");
     }
-}
-
-#[cfg(test)]
-mod pade_tests {
-    use super::*;
 
     /// The approximant by its polynomials: `P(-x) / P(x)`, `P(x) = sum of (2N - k)! / (k! (N - k)!) x^k`.
     fn by_polynomials(order: usize, x: Complex<f64>) -> Complex<f64> {
@@ -534,5 +589,21 @@ mod pade_tests {
             }
         }
         assert_eq!((Pade::new(0), Pade::new(9)), (None, None));
+    }
+
+    #[test]
+    fn samples_come_out_as_many_steps_later() {
+        for count in 0..4 {
+            let model = ChannelModel::samples(count);
+            assert_eq!(model.order(), count);
+            let mut x = DVector::zeros(count);
+            let mut out = Vec::new();
+            for u in [1.0, 2.0, 3.0, 4.0, 5.0] {
+                out.push((&model.c * &x).sum() + model.d * u);
+                x = &model.a * &x + &model.b * u;
+            }
+            let delayed: Vec<f64> = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0][3 - count..][..5].to_vec();
+            assert_eq!(out, delayed, "{count} samples");
+        }
     }
 }

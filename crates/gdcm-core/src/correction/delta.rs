@@ -49,15 +49,17 @@ impl Delta {
     /// G and D of the mismatch of two representatives.
     pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
         let phases = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
-        let delay_s = mismatch.map(|pair, entry| {
-            let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
-            Some(entry.median(&mut delays(phase, entry.omega(omega))))
-        });
-        let band_delay_s = mismatch.map(|pair, entry| {
-            let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
-            Some(band_delay_s(phase.iter().copied(), entry.omega(omega), entry.weights()))
-        });
-        Self { gain: delta_gains(mismatch), delay_s, band_delay_s }
+        let of_each = |value: fn(&Mismatch, &[f64], &[f64]) -> f64| {
+            mismatch.map(|pair, entry| {
+                let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
+                Some(value(entry, phase, entry.omega(omega)))
+            })
+        };
+        Self {
+            gain: delta_gains(mismatch),
+            delay_s: of_each(|entry, phase, omega| entry.median(&mut delays(phase, omega))),
+            band_delay_s: of_each(|entry, phase, omega| band_delay_s(phase.iter().copied(), omega, entry.weights())),
+        }
     }
 }
 

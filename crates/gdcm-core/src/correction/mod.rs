@@ -6,35 +6,25 @@
 //! [`toggles`] tell what each held entry costs. Tables are `[output, input]`, gains are ratios, delays are seconds.
 
 mod branch_and_bound;
-mod channel_correction;
 mod channels;
 mod components;
 mod conflict;
 mod corrected_model;
 mod delta;
-mod lead_design;
-mod lead_price;
+mod leads;
 mod problem;
-mod quantity;
-mod remedy;
 mod sensitivity;
-mod solution;
 mod solve;
 
 pub use branch_and_bound::*;
-pub use channel_correction::*;
 pub use channels::*;
 use components::*;
 pub use conflict::*;
 pub use corrected_model::*;
 pub use delta::*;
-pub use lead_design::*;
-pub use lead_price::*;
+pub use leads::*;
 pub use problem::*;
-pub use quantity::*;
-pub use remedy::*;
 pub use sensitivity::*;
-pub use solution::*;
 pub use solve::*;
 
 /// Bounds of the channel gains.

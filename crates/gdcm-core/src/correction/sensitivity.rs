@@ -43,11 +43,9 @@ impl Sensitivity {
         let change = if is_dear { "lowering" } else { "raising" };
         let way = match (self.quantity, self.restraint) {
             (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by 1 dB"),
-            (Quantity::Gain(_), ActiveConstraint::LowerBound(_)) => {
-                format!("on its lower bound: {change} the bound by 1 dB")
-            }
-            (Quantity::Gain(_), ActiveConstraint::UpperBound(_)) => {
-                format!("on its upper bound: {change} the bound by 1 dB")
+            (Quantity::Gain(_), bound) => {
+                let end = if matches!(bound, ActiveConstraint::LowerBound(_)) { "lower" } else { "upper" };
+                format!("on its {end} bound: {change} the bound by 1 dB")
             }
             (_, ActiveConstraint::Held(_)) => format!("held: 1 ms {} delay", if is_dear { "less" } else { "more" }),
             (Quantity::Delay, ActiveConstraint::LowerBound(_)) => "0: 1 ms of lead".to_owned(),
@@ -62,16 +60,16 @@ impl Sensitivity {
 ///
 /// `solution` is the solution of `problem` ([`super::solve`]).
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
-    let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
-    let inputs = solution.inputs.len();
-    let (of_entries, of_channels) = multipliers(&Restrained::of(problem, solution, &held));
+    let minimum = Restrained::of(problem, solution);
+    let (of_entries, of_channels) = multipliers(&minimum);
     let sensitivity = |restraint: ActiveConstraint, slope: f64| {
         let per_unit = problem.quantity.per_unit(slope);
         let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
         Sensitivity { quantity: problem.quantity, restraint, per_unit, share_per_unit }
     };
-    let of_held = held.iter().zip(&of_entries).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
-    let channels = Channel::all(inputs, solution.outputs.len()).zip(of_channels);
+    let of_held =
+        minimum.held.iter().zip(&of_entries).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
+    let channels = Channel::all(minimum.inputs, solution.outputs.len()).zip(of_channels);
     let of_bounds = channels.filter(|(_, slope)| *slope != 0.0).map(|(channel, slope)| {
         // The objective falls as the upper bound is raised, or the lower one lowered.
         let bound = if slope < 0.0 { ActiveConstraint::UpperBound } else { ActiveConstraint::LowerBound };
@@ -107,14 +105,13 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
 /// In the objective's unit for each unit of the channels: for delays s² / s. `solution` is the solution of `problem`
 /// ([`super::solve`]).
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
-    let held: Vec<Pair> = problem.held_entries().map(|(pair, _)| pair).collect();
-    let minimum = Restrained::of(problem, solution, &held);
+    let minimum = Restrained::of(problem, solution);
     let pushes = minimum.pieces().into_iter().map(|piece| minimum.push(&piece));
     pushes.filter(|(_, stopping)| stopping.is_empty()).fold(0.0, |most, (push, _)| most.max(push.abs()))
 }
 
 /// A minimum seen from its channels: inputs first, then outputs.
-struct Restrained<'a> {
+struct Restrained {
     /// Number of input channels.
     inputs: usize,
     /// Slope of the objective in each channel's value.
@@ -122,13 +119,14 @@ struct Restrained<'a> {
     /// Whether each channel is on its lower and on its upper bound.
     at_bounds: Vec<(bool, bool)>,
     /// The held entries: sums of an input's and an output's value.
-    held: &'a [Pair],
+    held: Vec<Pair>,
 }
 
-impl<'a> Restrained<'a> {
-    fn of(problem: &Problem, solution: &Solution, held: &'a [Pair]) -> Self {
+impl Restrained {
+    fn of(problem: &Problem, solution: &Solution) -> Self {
         let on = |value: &f64| (*value == problem.bounds.lower, *value == problem.bounds.upper);
         let at_bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+        let held = problem.held_entries().map(|(pair, _)| pair).collect();
         Self { inputs: solution.inputs.len(), slopes: slopes(problem, solution), at_bounds, held }
     }
 
@@ -159,7 +157,7 @@ impl<'a> Restrained<'a> {
 ///
 /// That is the change of the least objective with the sum at which each held entry is held, and with the bound that each channel is
 /// on (0 where none acts).
-fn multipliers(minimum: &Restrained<'_>) -> (Vec<f64>, Vec<f64>) {
+fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
     let channels = minimum.slopes.len();
     let mut bounds = vec![0.0; channels];
     for piece in minimum.pieces() {

@@ -1,10 +1,170 @@
-//! The solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex quadratic program.
+//! The solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex quadratic program: the gains or
+//! delays found, and how sure they are.
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
-use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::dataset::{Pair, PairTable};
+use crate::response::mean;
+use crate::units::{s_to_ms, telling, told_apart};
+
+/// Whether the answer is known to be the best there is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// No channels inside the bounds that hold the targets are better by more than the relative gap, which is at most 1e-9.
+    Proven {
+        /// `(objective - lower bound) / objective`.
+        gap: f64,
+    },
+    /// The search ended first: better ones may exist, but none better by more than the relative gap.
+    NotProven {
+        /// `(objective - lower bound) / objective`.
+        gap: f64,
+        /// What ended the search.
+        limit: Limit,
+    },
+}
+
+impl Outcome {
+    /// `(objective - lower bound) / objective`.
+    pub fn gap(self) -> f64 {
+        match self {
+            Outcome::Proven { gap } | Outcome::NotProven { gap, .. } => gap,
+        }
+    }
+
+    /// The outcome in words.
+    pub fn words(self) -> String {
+        match self {
+            Outcome::Proven { .. } => {
+                "Proven: no gains within the bounds that hold the held responses are better.".to_owned()
+            }
+            Outcome::NotProven { gap, limit } => {
+                let ended = match limit {
+                    Limit::Work => "at its budget of work",
+                    Limit::Memory => "at its budget of memory",
+                    Limit::Rounding => "where rounding decides",
+                };
+                let percent = 100.0 * gap;
+                format!("Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}.")
+            }
+        }
+    }
+}
+
+/// One local minimum of the objective.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LocalMinimum {
+    /// Value of each input channel.
+    pub inputs: Vec<f64>,
+    /// Value of each output channel.
+    pub outputs: Vec<f64>,
+    /// The objective there.
+    pub objective: f64,
+}
+
+/// What is known of the least objective besides its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Proof {
+    /// No channels inside the bounds that hold the targets have a lower objective.
+    pub lower_bound: f64,
+    /// Whether that is a proof. The gap is relative to the objective, or to a billionth of `sum w G^2` where the objective is
+    /// smaller: below that, rounding decides.
+    pub outcome: Outcome,
+    /// Nodes visited by the search.
+    pub nodes: usize,
+    /// Distinct local minima within 1 % of the objective, best first; the first is the answer.
+    pub local_minima: Vec<LocalMinimum>,
+    /// Whether the search has shown that there is no other local minimum within 1 %.
+    pub all_minima: bool,
+}
+
+/// A held entry that the bounds or the other held entries do not allow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unmatched {
+    /// What is held: a gain, or a delay or a signed delay in seconds.
+    pub quantity: Quantity,
+    /// The entry.
+    pub pair: Pair,
+    /// Its delta gain `G` or delta delay `D`; a negative `D` asks for phase lead.
+    pub delta: f64,
+    /// The product or the sum at which it is held instead.
+    pub target: f64,
+    /// What it gets too much: `20 log10 (target / delta)` dB of gain, negative where the correction is too weak; or
+    /// `target - delta` seconds of delay, the lead that would be needed besides.
+    pub excess: f64,
+    /// What is in the way; where the entry is not part of it, its miss is the compromise with those that are.
+    pub why: Conflict,
+}
+
+impl Unmatched {
+    /// Phase error in degrees that a missed delay leaves at `omega` rad/s: the reference less the corrected model.
+    pub fn phase_left_deg(&self, omega: f64) -> f64 {
+        (self.delta - self.target).to_degrees() * -omega
+    }
+
+    /// The miss in words; of a delay with the phase that remains at `omega_top`, the top of the band in rad/s.
+    pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
+        let pair = pair_name(self.pair, inputs, outputs);
+        if let Quantity::Gain(_) = self.quantity {
+            let (target, delta) = told_apart(self.target, self.delta, 3);
+            let sign = if self.excess > 0.0 { "+" } else { "" };
+            return format!("{pair} is held at {target} instead of {delta} ({sign}{} dB).", telling(self.excess, 1));
+        }
+        if self.quantity == Quantity::SignedDelay && self.delta < 0.0 {
+            let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
+            let left = telling(self.phase_left_deg(omega_top).abs(), 0);
+            return format!(
+                "{pair} gets {target} of the {delta} ms of lead it wants; {left}° of phase error remain at {omega_top} rad/s."
+            );
+        }
+        let lead_ms = 1e3 * self.excess;
+        let left = telling(self.phase_left_deg(omega_top).abs(), 0);
+        let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
+            format!("{pair} needs {} ms of lead: a delay cannot give it", telling(lead_ms, 1))
+        } else if lead_ms > 0.0 {
+            format!("{pair} gets {} ms more delay than it needs", telling(lead_ms, 1))
+        } else {
+            format!("{pair} lacks {} ms of delay", telling(-lead_ms, 1))
+        };
+        format!("{why}; {left}° of phase error remain at {omega_top} rad/s.")
+    }
+}
+
+/// The channel gains of equation (7), the channel delays of equation (11) or the signed delays of M15.4 in seconds, with the proof.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solution {
+    /// What was minimised.
+    pub quantity: Quantity,
+    /// Value of each input channel, m.
+    pub inputs: Vec<f64>,
+    /// Value of each output channel, p.
+    pub outputs: Vec<f64>,
+    /// The objective: of squared ratios, of squared dB, or in s².
+    pub objective: f64,
+    /// How sure that is.
+    pub proof: Proof,
+    /// Product or sum at which each held entry is held, p x m: its delta where that is possible (M8 and M9, stage 1).
+    pub targets: PairTable<Option<f64>>,
+    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem; or
+    /// within the tolerance of [`Problem::agreement`](super::Problem::agreement) where a loop of entries asks for it.
+    pub matched: bool,
+    /// The entries that are not.
+    pub unmatched: Vec<Unmatched>,
+    /// The loops of held entries that disagree by no more than the tolerance: each is held at the nearest that agrees.
+    pub agreeing: Vec<Conflict>,
+    /// Each set of held entries and bounds that cannot hold together, once; loops first, then by number of entries.
+    pub conflicts: Vec<Conflict>,
+    /// The single changes that would let every held entry be held, where some cannot.
+    pub remedy: Option<Remedy>,
+}
+
+impl Solution {
+    /// Gain, delay or signed delay of each channel.
+    pub fn channels(&self) -> Channels<f64> {
+        Channels { inputs: self.inputs.clone(), outputs: self.outputs.clone() }
+    }
+}
 
 /// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below which a held entry counts as
 /// matched (M8).
@@ -36,13 +196,7 @@ const MATCHED: f64 = 1e-8;
 pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) -> Result<Solution, ProblemError> {
     problem.check()?;
     let effort = Effort::new(stop);
-    let coordinate = problem.coordinate();
-    let held = Held {
-        outputs: problem.delta.outputs(),
-        inputs: problem.delta.inputs(),
-        entries: problem.held_entries().map(|(pair, delta)| (pair, coordinate.of(delta))).collect(),
-        range: problem.range(),
-    };
+    let (held, coordinate) = (Held::of(problem), problem.coordinate());
     let reached = reach(&held, |nearest| minimise(nearest, problem.quantity, &effort))?;
     let objective = objective(problem, &reached.components);
     let start = start(&objective, problem.quantity)?;
@@ -50,7 +204,30 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
     for (scales, _) in &mut found.minima {
         settle(problem.quantity, &reached.components, &objective, scales);
     }
-    Ok(assemble(problem, &held, &reached, &found, &effort)?)
+    let proof = proof(problem, &reached.components, found);
+    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses(problem, &held, &reached, &effort)?
+        .into_iter()
+        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
+    let conflicts = conflicts_of(&unmatched);
+    let remedy = Remedy::new(problem, &settled_loops(&held, &reached, &agreeing), &conflicts, &effort)?;
+    let mut targets = PairTable::filled(held.outputs, held.inputs, None);
+    for (pair, target) in &reached.targets {
+        targets[*pair] = Some(coordinate.value(*target));
+    }
+    let LocalMinimum { inputs, outputs, objective } = proof.local_minima[0].clone();
+    Ok(Solution {
+        quantity: problem.quantity,
+        inputs,
+        outputs,
+        objective,
+        proof,
+        targets,
+        matched: unmatched.is_empty(),
+        agreeing: conflicts_of(&agreeing),
+        remedy,
+        unmatched,
+        conflicts,
+    })
 }
 
 /// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
@@ -72,12 +249,12 @@ fn minimise(objective: &Objective, quantity: Quantity, effort: &Effort<'_>) -> R
 fn settle(quantity: Quantity, components: &Components, objective: &Objective, scales: &mut [f64]) {
     objective.shift_floating_pieces(scales, |piece, scales| {
         let (inputs, outputs) = components.channels(scales);
-        let of_piece = |channels: &[Placement], values: &[f64]| -> Vec<f64> {
-            let pairs = channels.iter().zip(values);
-            pairs.filter(|(channel, _)| piece.contains(&channel.component)).map(|(_, value)| *value).collect()
+        let of_piece = |nodes: &[Placement], values: &[f64]| -> Vec<f64> {
+            let pairs = nodes.iter().zip(values);
+            pairs.filter(|(node, _)| piece.contains(&node.component)).map(|(_, value)| *value).collect()
         };
-        let (inputs, outputs) = (of_piece(&components.inputs, &inputs), of_piece(&components.outputs, &outputs));
-        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let (input_nodes, output_nodes) = components.sides();
+        let (inputs, outputs) = (of_piece(input_nodes, &inputs), of_piece(output_nodes, &outputs));
         if quantity.regularises_inputs() {
             let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
             return apart / (inputs.len() + outputs.len()).max(1) as f64;
@@ -114,55 +291,20 @@ fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (V
     (inputs.iter().map(value).collect(), outputs.iter().map(value).collect())
 }
 
-fn assemble(
-    problem: &Problem,
-    held: &Held,
-    reached: &Reached,
-    found: &Minima,
-    effort: &Effort<'_>,
-) -> Result<Solution, SearchStopped> {
-    let coordinate = problem.coordinate();
+/// What the search found, in gains or delays.
+fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
-        let (inputs, outputs) = channels_at(problem, &reached.components, scales);
+        let (inputs, outputs) = channels_at(problem, components, scales);
         let objective = problem.objective_at(&inputs, &outputs);
         LocalMinimum { inputs, outputs, objective }
     };
     let local_minima: Vec<LocalMinimum> = found.minima.iter().map(minimum).collect();
-    let LocalMinimum { inputs, outputs, objective } = local_minima[0].clone();
     let outcome = match found.limit {
         None => Outcome::Proven { gap: found.gap },
         Some(limit) => Outcome::NotProven { gap: found.gap, limit },
     };
-    let proof = Proof {
-        lower_bound: coordinate.objective(found.lower_bound).min(objective),
-        outcome,
-        nodes: found.nodes,
-        local_minima,
-        all_minima: found.all_minima,
-    };
-    let mut targets = PairTable::filled(held.outputs, held.inputs, None);
-    for (pair, target) in &reached.targets {
-        targets[*pair] = Some(coordinate.value(*target));
-    }
-    let misses = misses(problem, held, reached, effort)?;
-    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses
-        .into_iter()
-        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
-    let conflicts = conflicts_of(&unmatched);
-    let remedy = remedy_of(problem, &settled_loops(held, reached, &agreeing), &conflicts, effort)?;
-    Ok(Solution {
-        quantity: problem.quantity,
-        inputs,
-        outputs,
-        objective,
-        proof,
-        targets,
-        matched: unmatched.is_empty(),
-        agreeing: conflicts_of(&agreeing),
-        remedy,
-        unmatched,
-        conflicts,
-    })
+    let lower_bound = problem.coordinate().objective(found.lower_bound).min(local_minima[0].objective);
+    Proof { lower_bound, outcome, nodes: found.nodes, local_minima, all_minima: found.all_minima }
 }
 
 /// The held entries that stage 1 could not match, each with what is in the way.
@@ -187,8 +329,8 @@ fn misses(
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
-        let in_coordinate = || quantity.difference(target_at - delta_at, coordinate);
-        let excess = if quantity.is_gain() { in_coordinate() } else { target - delta };
+        let excess =
+            if quantity.is_gain() { quantity.difference(target_at - delta_at, coordinate) } else { target - delta };
         Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
     });
     Ok(missed.collect())
@@ -196,12 +338,10 @@ fn misses(
 
 /// What is held, the entries of loops that count as agreeing at their targets.
 fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held {
-    let entries = held
-        .entries
-        .iter()
-        .zip(&reached.targets)
-        .map(|(asked, target)| if agreeing.iter().any(|miss| miss.pair == asked.0) { *target } else { *asked });
-    Held { entries: entries.collect(), ..held.clone() }
+    let is_settled = |pair: Pair| agreeing.iter().any(|miss| miss.pair == pair);
+    let entries = held.entries.iter().zip(&reached.targets);
+    let entries = entries.map(|(asked, target)| if is_settled(asked.0) { *target } else { *asked });
+    Held { entries: entries.collect(), ..*held }
 }
 
 /// The distinct conflicts behind the misses.
@@ -218,19 +358,6 @@ fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
     }
     conflicts.sort_by_key(|conflict| (!matches!(conflict.kind, ConflictKind::Loop { .. }), conflict.entries.len()));
     conflicts
-}
-
-/// What would let everything be held, where something cannot.
-fn remedy_of(
-    problem: &Problem,
-    held: &Held,
-    conflicts: &[Conflict],
-    effort: &Effort<'_>,
-) -> Result<Option<Remedy>, SearchStopped> {
-    let mut suspects: Vec<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
-    suspects.sort();
-    suspects.dedup();
-    (!suspects.is_empty()).then(|| Remedy::new(problem, held, &suspects, effort)).transpose()
 }
 
 /// A point within about 1e-9 of the minimum of a sum of squares over its box, by clarabel's interior point.
@@ -252,10 +379,15 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
 
 /// `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay where they are.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
-    let size = free.len();
-    let (curvature, slope) = quadratic(objective, free);
-    let row = |row: usize| (0..size).map(move |column| (row, column));
-    let quadratic = CscMatrix::from((0..size).map(|at| row(at).map(|at| &curvature[at]))).to_triu();
+    let (size, scales) = (free.len(), objective.scales());
+    // Slope and curvature where the free scales are 0: the objective is a sum of squares.
+    let mut origin = objective.lower.clone();
+    free.iter().for_each(|&index| origin[index] = 0.0);
+    let mut at = Expansion::zero(scales);
+    objective.expand(&origin, Curvature::True, &mut at);
+    let slope: Vec<f64> = free.iter().map(|&index| at.gradient[index]).collect();
+    let row = |row: usize| free.iter().map(move |column| row * scales + column);
+    let quadratic = CscMatrix::from(free.iter().map(|&index| row(index).map(|entry| &at.hessian[entry]))).to_triu();
     let columns = (0..=size).map(|column| 2 * column).collect();
     let rows = (0..size).flat_map(|column| [column, size + column]).collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
@@ -264,35 +396,5 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
         free.iter().map(|&index| objective.upper[index]).chain(free.iter().map(|&index| -objective.lower[index]));
     let ends: Vec<f64> = ends.collect();
     let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
-    convex_program(&quadratic, slope.as_slice(), &sides, &ends, settings)
-        .map_err(|reason| ProblemError::Program { reason })
-}
-
-/// Curvature and slope at 0 of the objective over the free scales.
-fn quadratic(objective: &Objective, free: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
-    let mut curvature = DMatrix::zeros(free.len(), free.len());
-    let mut slope = DVector::zeros(free.len());
-    let place = |index: usize| free.iter().position(|&candidate| candidate == index);
-    for term in &objective.terms {
-        let Function::Quadratic { weight, centre, .. } = term.function else {
-            continue;
-        };
-        let ends = [(place(term.to), term.to, 1.0), (place(term.from), term.from, -1.0)];
-        // What the ends that do not move leave to be met.
-        let fixed: f64 = ends
-            .iter()
-            .filter(|(place, ..)| place.is_none())
-            .map(|(_, index, sign)| sign * objective.lower[*index])
-            .sum();
-        for (row, _, sign) in ends {
-            let Some(row) = row else { continue };
-            slope[row] += 2.0 * weight * sign * (fixed - centre.value);
-            for (column, _, other) in ends {
-                if let Some(column) = column {
-                    curvature[(row, column)] += 2.0 * weight * sign * other;
-                }
-            }
-        }
-    }
-    (curvature, slope)
+    convex_program(&quadratic, &slope, &sides, &ends, settings).map_err(|reason| ProblemError::Program { reason })
 }

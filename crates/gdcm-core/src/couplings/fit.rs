@@ -1,14 +1,21 @@
-//! The fit of mixing and feedback to all conditions at once (M16.2).
+//! The fit of mixing and feedback to all conditions at once (M16.2); without each condition in turn, and the error bars that this
+//! gives (M16.4).
+//!
+//! ```text
+//! sd^2 = (n - 1) / n sum_c (theta_(-c) - mean theta_(-c))^2,   half-width = t(n - 1) sd
+//! ```
+//!
+//! B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
 
 use nalgebra::DMatrix;
 
 use super::{
-    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, LastPass, NormalEquations, Unknown,
-    WeightedCondition,
+    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown, WeightedCondition,
 };
-use crate::executor::{Executor, each};
-use crate::progress::{Cancelled, Progress};
-use crate::schedule::Airspeeds;
+use crate::dataset::ConditionId;
+use crate::executor::{Executor, Sequential, each};
+use crate::progress::{Cancelled, Progress, Shares, Untold};
+use crate::uncertainty::student_quantile;
 
 /// The couplings of a problem, and how they were found.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,74 +48,119 @@ pub fn fit_couplings(
     progress: &dyn Progress,
 ) -> Result<CouplingFit, CouplingError> {
     problem.check()?;
-    let airspeeds = problem.airspeeds()?;
-    let fed_back = problem.fed_back();
+    let (airspeeds, fed_back) = (problem.airspeeds()?, problem.fed_back());
     let unknowns = Unknown::all(problem, &airspeeds, &fed_back);
     let conditions = each(executor, &problem.conditions, |of| WeightedCondition::new(problem, of, &fed_back));
     if !conditions.iter().any(WeightedCondition::counts) {
         return Err(CouplingError::NothingToFit { conditions: conditions.len() });
     }
-    let passes = Passes { problem, airspeeds, fed_back, unknowns, conditions };
-    passes.run(executor, progress)
-}
-
-/// The passes of one fit.
-struct Passes<'a> {
-    problem: &'a CouplingProblem,
-    airspeeds: Airspeeds,
-    fed_back: Vec<usize>,
-    unknowns: Vec<Unknown>,
-    conditions: Vec<WeightedCondition<'a>>,
-}
-
-impl Passes<'_> {
-    fn run(self, executor: &dyn Executor, progress: &dyn Progress) -> Result<CouplingFit, CouplingError> {
-        let (problem, solves) = (self.problem, self.problem.options.solves.max(1));
-        let mut matrices = CouplingMatrices::none(self.airspeeds.clone(), problem.inputs(), problem.outputs());
-        let (mut coefficients, mut optimum) = (Vec::with_capacity(solves), None);
-        for solve in 0..solves {
-            let pass = self.equations(&matrices, executor, progress)?.solve(&self.unknowns, problem.options.ridge)?;
-            matrices = matrices.with(&self.unknowns, pass.coefficients.as_slice());
-            coefficients.push(pass.coefficients.as_slice().to_vec());
-            optimum = Some(pass);
-            progress.advanced(solve + 1, solves);
-        }
-        matrices.check()?;
-        let Some(last) = optimum else { return Err(CouplingError::NothingToFit { conditions: 0 }) };
-        let fed_back = problem.kind.feeds_back();
-        let left_out = (0..problem.outputs()).filter(|output| fed_back && !self.fed_back.contains(output));
-        Ok(CouplingFit {
-            matrices,
-            coefficients,
-            residual: last.residual,
-            not_fed_back: left_out.collect(),
-            undetermined: last.undetermined.iter().map(|&place| self.unknowns[place]).collect(),
-            unknowns: self.unknowns,
-        })
-    }
-
-    /// The normal equations of the pass after these couplings.
-    fn equations(
-        &self,
-        last: &CouplingMatrices,
-        executor: &dyn Executor,
-        progress: &dyn Progress,
-    ) -> Result<NormalEquations, CouplingError> {
-        let feedback: &DMatrix<f64> = last.feedback();
-        let places: Vec<usize> = (0..self.conditions.len()).collect();
-        let blocks = each(executor, places, |place| {
+    // The normal equations of the pass after these couplings.
+    let equations = |last: &CouplingMatrices| {
+        let blocks = each(executor, &conditions, |condition| {
             if progress.cancelled() {
                 return Err(CouplingError::Cancelled(Cancelled));
             }
-            let mixing = last.mixing(self.problem.conditions[place].airspeed_kt);
-            let last = LastPass { mixing, feedback, fed_back: &self.fed_back };
-            ConditionBlocks::of(&self.conditions[place], &last)
+            ConditionBlocks::of(condition, last, &fed_back)
         });
-        let mut equations = NormalEquations::zeros(self.unknowns.len());
-        for (blocks, condition) in blocks.into_iter().zip(&self.problem.conditions) {
-            let v = self.airspeeds.scaled(condition.airspeed_kt);
-            equations.add(&self.unknowns, &blocks?, &self.fed_back, v);
+        let mut equations = NormalEquations::zeros(unknowns.len());
+        for (blocks, condition) in blocks.into_iter().zip(&conditions) {
+            equations.add(&unknowns, &blocks?, &fed_back, airspeeds.scaled(condition.airspeed_kt));
         }
-        Ok(equations)
+        Ok::<_, CouplingError>(equations)
+    };
+    let mut matrices = CouplingMatrices::none(airspeeds.clone(), problem.inputs(), problem.outputs());
+    let (mut coefficients, mut residual, mut undetermined) = (Vec::new(), 0.0, Vec::new());
+    let solves = problem.options.solves.max(1);
+    for solve in 0..solves {
+        let pass = equations(&matrices)?.solve(&unknowns, problem.options.ridge)?;
+        matrices = matrices.with(&unknowns, pass.coefficients.as_slice());
+        coefficients.push(pass.coefficients.as_slice().to_vec());
+        (residual, undetermined) = (pass.residual, pass.undetermined);
+        progress.advanced(solve + 1, solves);
     }
+    matrices.check()?;
+    let is_left_out = |output: &usize| problem.kind.feeds_back() && !fed_back.contains(output);
+    Ok(CouplingFit {
+        matrices,
+        coefficients,
+        residual,
+        not_fed_back: (0..problem.outputs()).filter(is_left_out).collect(),
+        undetermined: undetermined.into_iter().map(|place| unknowns[place]).collect(),
+        unknowns,
+    })
+}
+
+/// Conditions below which there are no error bars.
+pub const LEAST_CONDITIONS: usize = 3;
+
+/// The fit without one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeftOutFit {
+    /// The condition that is left out.
+    pub condition: ConditionId,
+    /// The fit to all others.
+    pub fit: CouplingFit,
+}
+
+/// The couplings without each condition in turn, in the order of the conditions; each is a piece of work of its own.
+///
+/// # Errors
+/// [`CouplingError::TooFewConditions`] of fewer than three, and as [`fit_couplings`].
+pub fn left_out_fits(
+    problem: &CouplingProblem,
+    executor: &dyn Executor,
+    progress: &dyn Progress,
+) -> Result<Vec<LeftOutFit>, CouplingError> {
+    let count = problem.conditions.len();
+    check_count(count)?;
+    let shares = Shares::new(progress);
+    let fits = each(executor, 0..count, |place| {
+        let condition = problem.conditions[place].id;
+        let fit = fit_couplings(&problem.without(place), &Sequential, &Untold(progress))?;
+        shares.advance(1.0 / count as f64, "mixing and feedback without each condition")?;
+        Ok(LeftOutFit { condition, fit })
+    });
+    fits.into_iter().collect()
+}
+
+fn check_count(found: usize) -> Result<(), CouplingError> {
+    let needed = LEAST_CONDITIONS;
+    if found < needed { Err(CouplingError::TooFewConditions { needed, found }) } else { Ok(()) }
+}
+
+/// Half-widths of the error bars of mixing and feedback.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CouplingBars {
+    /// Of `M~` at one airspeed, m x m; 0 on its diagonal, which is 1.
+    pub mixing: DMatrix<f64>,
+    /// Of `K`, m x p.
+    pub feedback: DMatrix<f64>,
+    /// Student's quantile: a half-width over its standard deviation.
+    pub quantile: f64,
+}
+
+impl CouplingBars {
+    /// The bars of a level, Student's quantile of `n - 1` times the jackknife's standard deviation; those of the mixing at `airspeed_kt`.
+    ///
+    /// # Errors
+    /// [`CouplingError::TooFewConditions`] of fewer than three.
+    pub fn of(fits: &[LeftOutFit], airspeed_kt: f64, level: f64) -> Result<Self, CouplingError> {
+        check_count(fits.len())?;
+        let quantile = student_quantile(level, fits.len() as f64 - 1.0);
+        let matrices = || fits.iter().map(|of| &of.fit.matrices);
+        let mixing: Vec<_> = matrices().map(|of| of.normalised_mixing(airspeed_kt)).collect();
+        let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
+        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile, quantile })
+    }
+}
+
+/// Standard deviation of each entry by the jackknife, of the matrices without each condition; at least one.
+fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
+    let count = without.len() as f64;
+    let (rows, columns) = without[0].shape();
+    DMatrix::from_fn(rows, columns, |row, column| {
+        let mean = without.iter().map(|of| of[(row, column)]).sum::<f64>() / count;
+        let square: f64 = without.iter().map(|of| (of[(row, column)] - mean).powi(2)).sum();
+        ((count - 1.0) / count * square).sqrt()
+    })
 }

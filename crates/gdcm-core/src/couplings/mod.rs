@@ -20,41 +20,19 @@
 //!
 //! Index order `[output, input]` of responses, `[to, from]` of `M` (input, input) and of `K` (input, output); omega in rad/s.
 
-mod channel_removal;
-mod closed_loop;
-mod coupled_model;
+mod coupling_effects;
 mod coupling_matrices;
-mod coupling_size;
-mod error;
 mod fit;
-mod left_out_fits;
-mod loop_margin;
 mod normal_equations;
-mod pole_shift;
 mod problem;
-mod unknown;
 mod weighted_condition;
 
-pub use channel_removal::*;
-use closed_loop::*;
-pub use coupled_model::*;
+pub use coupling_effects::*;
 pub use coupling_matrices::*;
-pub use coupling_size::*;
-pub use error::*;
 pub use fit::*;
-pub use left_out_fits::*;
-pub use loop_margin::*;
 use normal_equations::*;
-pub use pole_shift::*;
 pub use problem::*;
-pub use unknown::*;
 use weighted_condition::*;
 
 #[cfg(test)]
-mod invariance_tests;
-#[cfg(test)]
-mod known_answers_tests;
-#[cfg(test)]
-mod missing_response_tests;
-#[cfg(test)]
-mod property_tests;
+mod tests;

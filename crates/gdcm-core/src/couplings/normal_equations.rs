@@ -11,16 +11,16 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::{ClosedLoop, CouplingError, Unknown, WeightedCondition};
+use super::{ClosedLoop, CouplingError, CouplingMatrices, Unknown, WeightedCondition};
 
 /// The couplings of the last pass at one condition.
-pub(super) struct LastPass<'a> {
+struct LastPass<'a> {
     /// `M(V)`, m x m.
-    pub(super) mixing: DMatrix<f64>,
+    mixing: DMatrix<f64>,
     /// `K`, m x p.
-    pub(super) feedback: &'a DMatrix<f64>,
+    feedback: &'a DMatrix<f64>,
     /// The outputs of which `K` has a column.
-    pub(super) fed_back: &'a [usize],
+    fed_back: &'a [usize],
 }
 
 /// Normal matrix and right side of one input column of one condition, in the unknowns `(a, j)`: number `a` of `t`, input `j`.
@@ -52,14 +52,19 @@ struct Scratch {
 }
 
 impl ConditionBlocks {
-    /// The blocks of a condition, where the last pass left these couplings.
+    /// The blocks of a condition, where the last pass left these couplings; `fed_back` are the outputs of which `K` has a column.
     ///
     /// # Errors
     /// [`CouplingError::SingularLoop`] where `I - K H` has no inverse at a frequency that counts.
-    pub(super) fn of(condition: &WeightedCondition<'_>, last: &LastPass<'_>) -> Result<Self, CouplingError> {
+    pub(super) fn of(
+        condition: &WeightedCondition<'_>,
+        last: &CouplingMatrices,
+        fed_back: &[usize],
+    ) -> Result<Self, CouplingError> {
+        let last = LastPass { mixing: last.mixing(condition.airspeed_kt), feedback: last.feedback(), fed_back };
         let (inputs, outputs) = last.feedback.shape();
-        let mut blocks = Self::zeros(inputs, last.fed_back.len());
-        let mut scratch = Scratch::new(inputs, outputs, last.fed_back.len() + 1);
+        let mut blocks = Self::zeros(inputs, fed_back.len());
+        let mut scratch = Scratch::new(inputs, outputs, fed_back.len() + 1);
         let mut closed_loop = ClosedLoop::new(last.feedback);
         for k in (0..condition.omega.len()).filter(|&k| condition.counts_at(k)) {
             scratch.f.copy_from_slice(condition.physics(k));
@@ -67,9 +72,9 @@ impl ConditionBlocks {
                 return Err(CouplingError::SingularLoop { condition: condition.id, omega_rad_s: condition.omega[k] });
             }
             for input in 0..inputs {
-                scratch.mix(last, input, outputs);
+                scratch.mix(&last, input, outputs);
                 if condition.squared_weights((k, input), &scratch.coupled, &mut scratch.squared) {
-                    scratch.weigh(condition.flight(k, input), last, outputs);
+                    scratch.weigh(condition.flight(k, input), &last, outputs);
                     blocks.columns[input].add(&scratch, inputs);
                 }
             }
@@ -222,13 +227,8 @@ impl NormalEquations {
         let count = unknowns.len();
         let uncoupled = DVector::from_iterator(count, unknowns.iter().map(|unknown| unknown.uncoupled()));
         let is_determined = |place: usize| self.gram[(place, place)] > 0.0;
-        let scale =
-            DVector::from_fn(
-                count,
-                |place, _| {
-                    if is_determined(place) { self.gram[(place, place)].sqrt().recip() } else { 1.0 }
-                },
-            );
+        let root = |place: usize| if is_determined(place) { self.gram[(place, place)].sqrt().recip() } else { 1.0 };
+        let scale = DVector::from_fn(count, |place, _| root(place));
         let draw = |place: usize| if is_determined(place) { ridge } else { 1.0 };
         let mut matrix =
             DMatrix::from_fn(count, count, |row, column| scale[row] * self.gram[(row, column)] * scale[column]);

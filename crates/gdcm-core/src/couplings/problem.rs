@@ -1,12 +1,19 @@
-//! What couplings are fitted to (M16.1).
+//! What couplings are fitted to (M16.1): the entries of the mixing and of the feedback, and the flight response without the delays and
+//! leads of its channels, with how well it is known (M16.2).
 
+use std::f64::consts::LN_10;
 use std::sync::Arc;
 
-use super::CouplingError;
-use crate::dataset::{ConditionId, Pair, PairTable};
+use nalgebra::Complex;
+
+use crate::correction::{Channel, Channels, LeadDesign};
+use crate::dataset::{ConditionId, ModelBands, Pair, PairTable};
 use crate::fidelity::CoherenceWeights;
-use crate::response::FrequencyResponse;
+use crate::progress::Cancelled;
+use crate::response::{FrequencyResponse, interpolate_values};
 use crate::schedule::Airspeeds;
+use crate::uncertainty::Measurement;
+use crate::units::{number, telling};
 
 /// Which couplings are put at the inputs of a physics model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -92,14 +99,9 @@ impl CouplingProblem {
 
     /// The same without one condition.
     pub fn without(&self, place: usize) -> Self {
-        let kept = self.conditions.iter().enumerate().filter(|(at, _)| *at != place);
-        Self {
-            kind: self.kind,
-            omega: Arc::clone(&self.omega),
-            on_axis: self.on_axis.clone(),
-            conditions: kept.map(|(_, condition)| condition.clone()).collect(),
-            options: self.options,
-        }
+        let mut others = self.clone();
+        others.conditions.remove(place);
+        others
     }
 
     /// The airspeeds of the conditions, centred and scaled.
@@ -144,35 +146,261 @@ impl CouplingProblem {
     /// Whether every table has a value for each response and frequency.
     ///
     /// # Errors
-    /// [`CouplingError::Shape`] of the first that has not, [`CouplingError::NothingToFit`] where there is no condition.
+    /// [`CouplingError::Shape`] of the first that has not.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
-        let (outputs, inputs, points) = (self.outputs(), self.inputs(), self.omega.len());
-        let expected = (outputs, inputs, points);
+        let expected @ [.., points] = [self.outputs(), self.inputs(), self.omega.len()];
         for condition in &self.conditions {
-            let shape = |of: &FrequencyResponse| (of.outputs(), of.inputs(), points_of(of.curves(), points));
-            let usable = (condition.usable.outputs(), condition.usable.inputs(), points);
-            let deviation = condition.deviation.as_ref();
-            let deviation = deviation.map(|of| (of.outputs(), of.inputs(), points_of(of, points)));
-            let coherence = condition.coherence.as_ref().map(|of| (of.outputs(), of.inputs(), points));
-            let found =
-                [Some(shape(&condition.physics)), Some(shape(&condition.flight)), Some(usable), deviation, coherence];
-            if let Some(wrong) = found.into_iter().flatten().find(|found| *found != expected) {
-                return Err(CouplingError::Shape {
-                    condition: condition.id,
-                    expected_outputs: outputs,
-                    expected_inputs: inputs,
-                    expected_points: points,
-                    outputs: wrong.0,
-                    inputs: wrong.1,
-                    points: wrong.2,
-                });
+            let (usable, coherence) = (&condition.usable, condition.coherence.as_ref());
+            let found = [
+                Some(shape_of(condition.physics.curves(), points)),
+                Some(shape_of(condition.flight.curves(), points)),
+                Some([usable.outputs(), usable.inputs(), points]),
+                condition.deviation.as_ref().map(|deviation| shape_of(deviation, points)),
+                coherence.map(|coherence| [coherence.outputs(), coherence.inputs(), points]),
+            ];
+            if let Some(found) = found.into_iter().flatten().find(|found| *found != expected) {
+                return Err(CouplingError::Shape { condition: condition.id, expected, found });
             }
         }
-        if self.conditions.is_empty() { Err(CouplingError::NothingToFit { conditions: 0 }) } else { Ok(()) }
+        Ok(())
     }
 }
 
-/// `expected` where every curve has as many values, else how many the first has that has not.
-fn points_of<T>(curves: &PairTable<Vec<T>>, expected: usize) -> usize {
-    curves.iter().map(|(_, curve)| curve.len()).find(|&points| points != expected).unwrap_or(expected)
+/// Outputs, inputs and frequencies of a table: as many of these as `expected` where every curve has them, else as many as the first that
+/// has not.
+fn shape_of<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
+    let other = curves.iter().map(|(_, curve)| curve.len()).find(|&points| points != expected);
+    [curves.outputs(), curves.inputs(), other.unwrap_or(expected)]
+}
+
+/// One number that is fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Unknown {
+    /// Coefficient of `v^power` in `M_to,from`: what of input `from` goes to input `to`.
+    Mixing {
+        /// The input that takes.
+        to: usize,
+        /// The input that is taken of.
+        from: usize,
+        /// Power of the scaled airspeed: 0 off the diagonal.
+        power: usize,
+    },
+    /// `K_input,output`: what of an output goes to an input.
+    Feedback {
+        /// The input that takes.
+        input: usize,
+        /// The output that is fed back.
+        output: usize,
+    },
+}
+
+impl Unknown {
+    /// What it is without any coupling: M = I, K = 0.
+    pub fn uncoupled(self) -> f64 {
+        match self {
+            Self::Mixing { to, from, power: 0 } if to == from => 1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Every unknown of a problem, row by row of `M`, then of `K`: the diagonal of `M` is a polynomial of degree
+    /// `min(degree, distinct airspeeds - 1)`, everything else a constant (M16.1).
+    pub(super) fn all(problem: &CouplingProblem, airspeeds: &Airspeeds, fed_back: &[usize]) -> Vec<Self> {
+        let inputs = problem.inputs();
+        let degree = problem.options.degree.min(airspeeds.clusters.len().saturating_sub(1));
+        let highest = |to: usize, from: usize| if to == from { degree } else { 0 };
+        let of_entry = |to, from| (0..=highest(to, from)).map(move |power| Self::Mixing { to, from, power });
+        let mixing = (0..inputs).flat_map(|to| (0..inputs).flat_map(move |from| of_entry(to, from)));
+        let feedback =
+            (0..inputs).flat_map(|input| fed_back.iter().map(move |&output| Self::Feedback { input, output }));
+        mixing.chain(feedback).collect()
+    }
+}
+
+/// Why no couplings can be found (M16.2).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CouplingError {
+    /// There is no condition, or none has a response that both representatives have.
+    #[error("no response of the {conditions} conditions is known of both the physics model and flight")]
+    NothingToFit {
+        /// Number of conditions.
+        conditions: usize,
+    },
+    /// Too few conditions for what is asked.
+    #[error("error bars need at least {needed} conditions, and there are {found}")]
+    TooFewConditions {
+        /// How many it takes.
+        needed: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A condition's table has another shape than the others.
+    #[error(
+        "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
+        expected[0],
+        expected[1],
+        expected[2],
+        found[0],
+        found[1],
+        found[2]
+    )]
+    Shape {
+        /// The condition.
+        condition: ConditionId,
+        /// Outputs, inputs and frequencies expected.
+        expected: [usize; 3],
+        /// Outputs, inputs and frequencies found.
+        found: [usize; 3],
+    },
+    /// The loop of a pass cannot be closed: `I - K H` is singular.
+    #[error(
+        "the feedback makes the loop of condition {condition} singular at {} rad/s",
+        number(*omega_rad_s)
+    )]
+    SingularLoop {
+        /// The condition.
+        condition: ConditionId,
+        /// The frequency \[rad/s\].
+        omega_rad_s: f64,
+    },
+    /// The normal matrix has no Cholesky factors.
+    #[error("the responses do not tell the {unknowns} entries of the mixing and the feedback apart")]
+    SingularNormalMatrix {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// The mixing takes an input away or turns it around.
+    #[error(
+        "the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
+        telling(*factor, 3),
+        number(*airspeed_kt)
+    )]
+    ReversedInput {
+        /// The input, counted from 1.
+        input: usize,
+        /// The airspeed \[kt\].
+        airspeed_kt: f64,
+        /// `M_ii` there.
+        factor: f64,
+    },
+    /// The work was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl CouplingError {
+    /// Why, in words that name the input.
+    pub fn words(&self, inputs: &[String]) -> String {
+        match self {
+            Self::ReversedInput { input, .. } => {
+                let name = inputs.get(input - 1).map_or("", String::as_str);
+                self.to_string().replace(&format!("input {input}"), &format!("input {name}"))
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+/// The mean signed delay of each channel \[s\] over the conditions; none of no condition.
+pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
+    let count = conditions.len() as f64;
+    let sum_s = |channel: Channel| conditions.iter().filter_map(|delays_s| delays_s.get(channel)).sum::<f64>();
+    Some(conditions.first()?.map(|channel, _| sum_s(channel) / count))
+}
+
+/// `R' = L_o^-1 R L_i^-1`, p x m on `omega` \[rad/s\]: what mixing and feedback are to give.
+///
+/// `L = e^(-j omega tau)` of a signed delay `tau` \[s\], or of a negative one the lead filter that `design` has for it (M15); without a
+/// design the first of any.
+#[must_use]
+pub fn without_channels(
+    flight: &FrequencyResponse,
+    omega: &[f64],
+    delays_s: &Channels<f64>,
+    design: Option<&LeadDesign>,
+) -> FrequencyResponse {
+    let of_channel = |tau_s: f64| -> Vec<Complex<f64>> {
+        match design.and_then(|design| design.filter(tau_s)) {
+            Some(filter) => omega.iter().map(|&omega| filter.at(omega)).collect(),
+            None => omega.iter().map(|omega| Complex::from_polar(1.0, -omega * tau_s)).collect(),
+        }
+    };
+    let channels = delays_s.map(|_, &tau_s| of_channel(tau_s));
+    FrequencyResponse::new(flight.curves().map(|pair, curve| {
+        let (output, input) = (&channels.outputs[pair.output], &channels.inputs[pair.input]);
+        curve.iter().zip(output.iter().zip(input)).map(|(value, (output, input))| value / (output * input)).collect()
+    }))
+}
+
+/// Standard deviation of `ln H` that a model's bands tell, p x m curves on `omega` \[rad/s\]:
+/// `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, linear in `ln omega`, beyond the bands that of their end (M16.2).
+pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
+    let on_grid = |values: &[f64]| interpolate_values(bands.omega(), values, omega);
+    bands.sd_db().map(|pair, sd_db| {
+        let (sd_db, sd_deg) = (on_grid(sd_db), on_grid(&bands.sd_deg()[pair]));
+        let both = |(db, deg): (&f64, &f64)| (0.5 * ((db * LN_10 / 20.0).powi(2) + deg.to_radians().powi(2))).sqrt();
+        sd_db.iter().zip(&sd_deg).map(both).collect()
+    })
+}
+
+/// Standard deviation of `ln H` that coherence `gamma^2` tells, p x m curves (M13.2):
+/// `C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+pub fn coherence_deviation(coherence: &PairTable<Vec<f64>>, measurement: &Measurement) -> PairTable<Vec<f64>> {
+    coherence.map(|_, curve| curve.iter().map(|&coherence| measurement.deviation(coherence)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correction::LeadSettings;
+
+    #[test]
+    fn an_input_that_is_turned_around_is_named() {
+        let error = CouplingError::ReversedInput { input: 2, airspeed_kt: 40.0, factor: -0.598_742_4 };
+        let words = error.words(&["LON".to_owned(), "LAT".to_owned()]);
+        assert!(words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"), "{words}");
+    }
+
+    fn signed_delays() -> Channels<f64> {
+        Channels { inputs: vec![0.04, -0.03], outputs: vec![-0.02] }
+    }
+
+    #[test]
+    fn the_mean_delay_of_each_channel_is_over_the_conditions() {
+        let other = Channels { inputs: vec![0.0, -0.05], outputs: vec![0.02] };
+        let mean = mean_delays_s(&[signed_delays(), other]).unwrap();
+        assert_eq!((mean.inputs, mean.outputs), (vec![0.02, -0.04], vec![0.0]));
+        assert_eq!(mean_delays_s(&[]), None);
+    }
+
+    #[test]
+    fn what_is_left_has_no_delay_and_no_filter_of_its_channels() {
+        let omega = [0.5, 2.0, 12.0];
+        let design = LeadDesign::new(LeadSettings::default(), Arc::from(omega));
+        let [second, output] = [-0.03, -0.02].map(|tau_s| design.filter(tau_s).unwrap());
+        let delayed = |omega: f64| Complex::from_polar(1.0, -0.04 * omega);
+        let flight = PairTable::from_fn(1, 2, |pair| {
+            let input = |omega| if pair.input == 0 { delayed(omega) } else { second.at(omega) };
+            omega.iter().map(|&omega| 3.0 * input(omega) * output.at(omega)).collect()
+        });
+        let left = without_channels(&FrequencyResponse::new(flight), &omega, &signed_delays(), Some(&design));
+        for (_, curve) in left.curves().iter() {
+            assert!(curve.iter().all(|value| (value - 3.0).norm() < 1e-14), "{curve:?}");
+        }
+        let ones = FrequencyResponse::new(PairTable::filled(1, 2, vec![Complex::from(1.0); 3]));
+        let turned = without_channels(&ones, &omega, &signed_delays(), None);
+        let expected = Complex::from_polar(1.0, -0.05 * omega[2]);
+        assert!((turned.curve(Pair::new(0, 1))[2] - expected).norm() < 1e-15, "pure delays where there is no design");
+    }
+
+    #[test]
+    fn a_deviation_is_the_mean_square_of_its_magnitude_and_its_phase() {
+        let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
+        let bands = ModelBands::new(vec![1.0, 10.0], table(20.0 / LN_10 * 0.03), table(0.04_f64.to_degrees())).unwrap();
+        let deviation = &response_deviation(&bands, &[0.5, 3.0])[Pair::new(0, 0)];
+        assert!(deviation.iter().all(|sd| (sd - (0.5 * (0.0009_f64 + 0.0016)).sqrt()).abs() < 1e-15));
+        let measurement = Measurement { averages: 8.0, window_s: None, factor: 1.0 };
+        let deviation = coherence_deviation(&PairTable::filled(1, 1, vec![0.5, 1.0]), &measurement);
+        assert_eq!(deviation[Pair::new(0, 0)], [0.25, 0.0]);
+    }
 }

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use super::{CouplingCondition, CouplingProblem};
 use crate::dataset::{ConditionId, Pair, PairTable};
+use crate::fidelity::{COST_SCALE, PHASE_WEIGHT};
 
 /// Weight of an on-axis response beside the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
@@ -11,11 +12,6 @@ const ON_AXIS: f64 = 2.0;
 const DEVIATION: f64 = 0.06;
 /// `e s` from which a frequency counts as an outlier.
 const OUTLIER: f64 = 10.0;
-/// Of the summand of J at one frequency (M4).
-const SCALE: f64 = 20.0;
-/// Weight of the squared phase \[deg\] beside the squared magnitude \[dB\] (M4).
-const PHASE_WEIGHT: f64 = 0.0175;
-
 /// What of a weight does not change from pass to pass.
 #[derive(Clone, Copy, Debug, Default)]
 struct FixedWeight {
@@ -29,6 +25,8 @@ struct FixedWeight {
 pub(super) struct WeightedCondition<'a> {
     /// The condition.
     pub(super) id: ConditionId,
+    /// True airspeed \[kt\].
+    pub(super) airspeed_kt: f64,
     /// The frequencies \[rad/s\].
     pub(super) omega: &'a [f64],
     outputs: usize,
@@ -57,6 +55,7 @@ impl<'a> WeightedCondition<'a> {
         };
         Self {
             id: condition.id,
+            airspeed_kt: condition.airspeed_kt,
             omega: &problem.omega,
             outputs,
             inputs,
@@ -116,7 +115,7 @@ impl FixedWeight {
         let (of_coupled, of_flight) = (coupled.norm_sqr(), flight.norm_sqr());
         let db = 10.0 * (of_coupled / of_flight).log10();
         let deg = (coupled * flight.conj()).arg().to_degrees();
-        let error = SCALE * (db * db + PHASE_WEIGHT * deg * deg);
+        let error = COST_SCALE * (db * db + PHASE_WEIGHT * deg * deg);
         let robust = (1.0 + error * (self.s / OUTLIER).powi(2)).sqrt();
         let squared = self.s * self.s * self.coherence / of_flight.max(0.25 * of_coupled) / robust;
         // A value of zero has no decibels, and beyond the largest numbers there is nothing to compare.

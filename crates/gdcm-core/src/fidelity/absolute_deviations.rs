@@ -66,14 +66,16 @@ fn best_vertex(fit: &Fit<'_>, start: Vertex, cancelled: &dyn Fn() -> bool) -> Re
         if cancelled() {
             return Err(FitError::Cancelled);
         }
-        let neighbours = equal[next].neighbours(fit);
-        if let Some(better) = neighbours.better {
-            best = better.clone();
-            equal = vec![better];
-            next = 0;
-            continue;
-        }
-        for vertex in neighbours.equal {
+        let equally_good = match equal[next].neighbours(fit) {
+            Neighbours::Better(better) => {
+                best = better.clone();
+                equal = vec![better];
+                next = 0;
+                continue;
+            }
+            Neighbours::Equal(vertices) => vertices,
+        };
+        for vertex in equally_good {
             if !equal.iter().any(|known| known.is_at(&vertex)) {
                 if misfit(&vertex) < misfit(&best) {
                     best = vertex.clone();
@@ -128,7 +130,7 @@ const ZERO: f64 = 1e-11;
 const FLAT: f64 = 1e-10;
 
 /// The constraints `x_i w = y_i` and `w_k = 0`, of which as many meet in a vertex as there are unknowns.
-pub struct Fit<'a> {
+struct Fit<'a> {
     /// Row by row.
     x: Vec<f64>,
     unknowns: usize,
@@ -137,33 +139,29 @@ pub struct Fit<'a> {
 
 /// A vertex: its weights, and the constraints that meet in it.
 #[derive(Clone, Debug)]
-pub struct Vertex {
+struct Vertex {
     /// The weights, none below zero but for rounding.
-    pub weights: Vec<f64>,
+    weights: Vec<f64>,
     /// Indices of the constraints: rows first, then weights.
     basis: Vec<usize>,
 }
 
 /// Where the edges of a vertex lead.
-pub struct Neighbours {
-    /// The end of an edge along which the deviations become less.
-    pub better: Option<Vertex>,
-    /// The ends of the edges along which they stay the same.
-    pub equal: Vec<Vertex>,
+enum Neighbours {
+    /// To the end of an edge along which the deviations become less.
+    Better(Vertex),
+    /// To the ends of the edges along which they stay the same.
+    Equal(Vec<Vertex>),
 }
 
 impl<'a> Fit<'a> {
     /// The constraints of the fit of `y` by `x`.
-    pub fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
+    fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
         Self { x: x.concat(), unknowns: x.first().map_or(0, Vec::len), y }
     }
 
-    fn unknowns(&self) -> usize {
-        self.unknowns
-    }
-
     fn count(&self) -> usize {
-        self.y.len() + self.unknowns()
+        self.y.len() + self.unknowns
     }
 
     fn row(&self, row: usize) -> &[f64] {
@@ -190,28 +188,31 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
+    /// The left-hand sides of some constraints: a row of `x`, or one of the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
-        let unit = |k: usize| DVector::from_fn(self.unknowns(), |row, _| if row == k { 1.0 } else { 0.0 });
-        DMatrix::from_fn(constraints.len(), self.unknowns(), |row, column| {
-            self.left(constraints[row], unit(column).as_slice())
+        DMatrix::from_fn(constraints.len(), self.unknowns, |row, column| {
+            match constraints[row].checked_sub(self.y.len()) {
+                None => self.row(constraints[row])[column],
+                Some(weight) => f64::from(weight == column),
+            }
         })
     }
 
     /// `sum_i |x_i w - y_i|`.
-    pub fn deviations(&self, w: &[f64]) -> f64 {
+    fn deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len()).map(|row| self.deviation(row, w).abs()).sum()
     }
 
     /// The weights of least squares, those below zero set to zero: not far from the vertex sought.
-    pub fn least_squares(&self) -> Vec<f64> {
-        let x = DMatrix::from_row_slice(self.y.len(), self.unknowns(), &self.x);
+    fn least_squares(&self) -> Vec<f64> {
+        let x = DMatrix::from_row_slice(self.y.len(), self.unknowns, &self.x);
         let normal = x.tr_mul(&x).cholesky();
         let solution = normal.map(|normal| normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y))));
-        solution.map_or(vec![0.0; self.unknowns()], |w| w.iter().map(|weight| weight.max(0.0)).collect())
+        solution.map_or(vec![0.0; self.unknowns], |w| w.iter().map(|weight| weight.max(0.0)).collect())
     }
 
     /// `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
-    pub fn squared_root_deviations(&self, w: &[f64]) -> f64 {
+    fn squared_root_deviations(&self, w: &[f64]) -> f64 {
         (0..self.y.len()).map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2)).sum()
     }
 }
@@ -265,7 +266,7 @@ fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
 
 impl Vertex {
     /// The vertex of the constraints that `weights` fulfils best; `None` where they make none, or one with a negative weight.
-    pub fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
+    fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
         let deviation = |constraint: usize| (fit.deviation(constraint, weights).abs(), constraint);
         let mut order: Vec<(f64, usize)> = (0..fit.count()).map(deviation).collect();
         order.sort_unstable_by(|(a, first), (b, second)| a.total_cmp(b).then(first.cmp(second)));
@@ -276,7 +277,7 @@ impl Vertex {
             if fit.matrix(&basis).rank(1e-6) < basis.len() {
                 basis.pop();
             }
-            if basis.len() == fit.unknowns() {
+            if basis.len() == fit.unknowns {
                 break;
             }
         }
@@ -284,9 +285,9 @@ impl Vertex {
     }
 
     /// The vertex in which every weight is zero.
-    pub fn origin(fit: &Fit<'_>) -> Self {
+    fn origin(fit: &Fit<'_>) -> Self {
         let basis = (fit.y.len()..fit.count()).collect();
-        Self { weights: vec![0.0; fit.unknowns()], basis }
+        Self { weights: vec![0.0; fit.unknowns], basis }
     }
 
     fn of(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
@@ -300,28 +301,24 @@ impl Vertex {
     }
 
     /// Whether two vertices are one place.
-    pub fn is_at(&self, other: &Self) -> bool {
+    fn is_at(&self, other: &Self) -> bool {
         self.weights.iter().zip(&other.weights).all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
     /// The vertices at the ends of this one's edges, where the deviations do not grow on the way: of those that fall the
     /// steepest (in many rows the first that falls at all would lead there in ten times the steps).
-    pub fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
+    fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
         let deviations = self.all_deviations(fit);
         let mut edges = self.edges(fit, &deviations);
         edges.sort_by(|a, b| a.relative_slope().total_cmp(&b.relative_slope()));
-        let mut neighbours = Neighbours { better: None, equal: Vec::new() };
+        let mut equal = Vec::new();
         for edge in edges.iter().filter(|edge| edge.relative_slope() <= FLAT) {
-            let Some(end) = self.end_of_edge(fit, edge, &deviations) else {
-                continue;
-            };
-            if edge.relative_slope() < -FLAT {
-                neighbours.better = Some(end);
-                return neighbours;
+            match self.end_of_edge(fit, edge, &deviations) {
+                Some(end) if edge.relative_slope() < -FLAT => return Neighbours::Better(end),
+                end => equal.extend(end),
             }
-            neighbours.equal.push(end);
         }
-        neighbours
+        Neighbours::Equal(equal)
     }
 
     /// The edges that leave this vertex: one constraint is given up, to either side; a weight only upwards.
@@ -372,9 +369,9 @@ impl Vertex {
     }
 
     /// Whether more constraints meet in this vertex than it takes: then its edges may not show every way down.
-    pub fn is_degenerate(&self, fit: &Fit<'_>) -> bool {
+    fn is_degenerate(&self, fit: &Fit<'_>) -> bool {
         let meet = |constraint: &usize| fit.deviation(*constraint, &self.weights).abs() <= ZERO;
-        (0..fit.count()).filter(meet).count() > fit.unknowns()
+        (0..fit.count()).filter(meet).count() > fit.unknowns
     }
 }
 

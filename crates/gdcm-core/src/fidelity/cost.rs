@@ -15,7 +15,7 @@ pub const PHASE_WEIGHT: f64 = 0.0175;
 pub const ACCEPTABLE: f64 = 100.0;
 
 /// Factor before both parts of J.
-pub(super) const SCALE: f64 = 20.0;
+pub(crate) const COST_SCALE: f64 = 20.0;
 
 /// How squared errors are averaged over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -65,10 +65,10 @@ impl Cost {
     ) -> Self {
         scratch.clear();
         scratch.extend(magnitude_error_db.map(|error| error * error));
-        let magnitude = SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
+        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
         scratch.clear();
         scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
-        let phase = SCALE * PHASE_WEIGHT * average.of(scratch, weights);
+        let phase = COST_SCALE * PHASE_WEIGHT * average.of(scratch, weights);
         Self { magnitude, phase }
     }
 
@@ -86,7 +86,7 @@ impl Cost {
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
     let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences { simulated, reference });
     let squared_degrees = 180.0 / PI * 180.0 / PI * phase;
-    SCALE / simulated.phase.len() as f64 * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
+    COST_SCALE / simulated.phase.len() as f64 * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
 }
 
 /// The sums over the frequencies of the squared differences of two curves, as many frequencies at once as the processor's

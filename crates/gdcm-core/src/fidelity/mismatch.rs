@@ -26,12 +26,10 @@ pub struct Mismatch {
 impl Mismatch {
     /// The difference of `simulated` from `reference`, on the same frequencies.
     pub fn new(simulated: &PolarCurve, reference: &PolarCurve) -> Self {
-        let difference = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>();
-        let mut phase = difference(&simulated.phase, &reference.phase);
-        phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
+        let differences = |a: &[f64], b: &[f64], of: fn(f64) -> f64| a.iter().zip(b).map(|(a, b)| of(a - b)).collect();
         Self {
-            magnitude_db: difference(&simulated.magnitude_db, &reference.magnitude_db),
-            phase,
+            magnitude_db: differences(&simulated.magnitude_db, &reference.magnitude_db, |difference| difference),
+            phase: differences(&simulated.phase, &reference.phase, wrap),
             coherence_weights: None,
             turn: 0.0,
         }
@@ -88,18 +86,15 @@ impl Mismatch {
     /// What is left of it after the simulated response has been multiplied by a factor of these magnitudes \[dB\] and phases \[rad\]
     /// at each frequency of the grid (M15.5).
     pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
-        let on = |own: &[f64], factor: &[f64]| -> Vec<f64> {
-            let sum = |factor: &[f64]| own.iter().zip(factor).map(|(own, factor)| own + factor).collect();
-            self.coherence_weights
-                .as_ref()
-                .map_or_else(|| sum(factor), |coherence_weights| sum(&coherence_weights.pick(factor)))
+        let weights = self.coherence_weights.as_ref();
+        let on = |own: &[f64], factor: &[f64], of: fn(f64) -> f64| -> Vec<f64> {
+            let sums = |factor: &[f64]| own.iter().zip(factor).map(|(own, factor)| of(own + factor)).collect();
+            weights.map_or_else(|| sums(factor), |weights| sums(&weights.pick(factor)))
         };
-        let mut phase = on(&self.phase, phase);
-        phase.iter_mut().for_each(|angle| *angle = wrap(*angle));
         Self {
-            magnitude_db: on(&self.magnitude_db, magnitude_db),
-            phase,
-            coherence_weights: self.coherence_weights.clone(),
+            magnitude_db: on(&self.magnitude_db, magnitude_db, |sum| sum),
+            phase: on(&self.phase, phase, wrap),
+            coherence_weights: weights.cloned(),
             turn: self.turn,
         }
     }

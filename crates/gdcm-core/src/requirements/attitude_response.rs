@@ -1,13 +1,14 @@
-//! The attitude that an input makes, over frequency: `Theta(j omega)`, from which bandwidth and phase delay are read (M17.1).
+//! The attitude that an input makes, over frequency: `Theta(j omega)`, from which bandwidth and phase delay are read (M17.1);
+//! and a model's response on the frequencies that are searched for crossings, kept for all that is read from it.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use nalgebra::Complex;
 
 use crate::assembly::PhysicalUnit;
-use crate::dataset::{Band, Channel};
+use crate::dataset::{Band, Channel, Dynamics, Pair};
 use crate::message_text::quoted;
-use crate::response::{between, log_spaced, unwrap, wrap};
+use crate::response::{FrequencyResponse, GainDelay, PreparedModel, between, log_spaced, unwrap, wrap};
 use crate::units::{number, ratio_to_db};
 
 /// Frequencies on which sign changes are looked for.
@@ -88,10 +89,14 @@ pub struct AttitudeResponse<'a> {
     /// What many points in a row are read from.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
-    omega: Vec<f64>,
-    magnitude_db: Vec<f64>,
-    phase: Vec<f64>,
-    lowest_of_band: usize,
+    /// The frequencies \[rad/s\] of the grid at which it is known, rising; at least two.
+    pub(super) omega: Vec<f64>,
+    /// `20 log10 |Theta|` on the grid, up to a constant that the units make.
+    pub(super) magnitude_db: Vec<f64>,
+    /// Continuous phase \[rad\] on the grid.
+    pub(super) phase: Vec<f64>,
+    /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
+    pub(super) lowest_of_band: usize,
 }
 
 impl<'a> AttitudeResponse<'a> {
@@ -131,37 +136,12 @@ impl<'a> AttitudeResponse<'a> {
         Self { samples, ..self }
     }
 
-    /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
-    pub(super) fn lowest_of_band(&self) -> usize {
-        self.lowest_of_band
-    }
-
     /// The phase \[deg\] at the lowest frequency of the band where it speaks for a stick or an output that counts the other way round:
     /// within 45 deg of +90 deg, where an attitude that follows its stick has 0 to -90 deg. Bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         let is_reversed = !(-225.0..=45.0).contains(&phase_deg);
         is_reversed.then_some(phase_deg)
-    }
-
-    /// The frequencies \[rad/s\] of the grid at which it is known, rising; at least two.
-    pub fn omega(&self) -> &[f64] {
-        &self.omega
-    }
-
-    /// `20 log10 |Theta|` on the grid, up to a constant that the units make.
-    pub fn magnitude_db(&self) -> &[f64] {
-        &self.magnitude_db
-    }
-
-    /// Continuous phase \[rad\] on the grid.
-    pub fn phase(&self) -> &[f64] {
-        &self.phase
-    }
-
-    /// The lowest and the highest frequency of the grid \[rad/s\].
-    pub fn range(&self) -> [f64; 2] {
-        [self.omega[0], self.omega[self.omega.len() - 1]]
     }
 
     /// Magnitude \[dB\] at `omega` \[rad/s\]; none where there is no response.
@@ -196,4 +176,65 @@ fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Ve
     let values = response(omega).into_iter().zip(omega).map(|(value, &omega)| value * output.factor(omega));
     let polar = values.map(|value| (ratio_to_db(value.norm()), value.arg()));
     polar.map(|(db, phase)| (db.is_finite() && phase.is_finite()).then_some((db, phase))).collect()
+}
+
+/// A model with its response on the search frequencies and on to twice the highest, at equal ratios: a phase delay needs
+/// `2 omega_180`.
+pub struct SampledModel {
+    prepared: PreparedModel,
+    omega: Vec<f64>,
+    values: FrequencyResponse,
+    /// Number of the search frequencies.
+    searched: usize,
+}
+
+impl SampledModel {
+    /// Samples a model that is searched in and about `band`.
+    pub fn of(dynamics: &Dynamics, band: Band) -> Self {
+        let prepared = PreparedModel::of(dynamics);
+        let mut omega = search_frequencies(band);
+        let (searched, highest) = (omega.len(), omega[omega.len() - 1]);
+        let ratio = omega[1] / omega[0];
+        let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
+        // One more than needed, for the interpolation to have a neighbour.
+        omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
+        let values = prepared.at(&omega);
+        Self { prepared, omega, values, searched }
+    }
+
+    /// Its response under `correction`, exact at any frequency (M2, M10).
+    pub fn exact(&self, pair: Pair, correction: GainDelay) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+        move |omega| {
+            let corrected = |values: &[Complex<f64>]| {
+                values.iter().zip(omega).map(|(value, omega)| value * correction.at(*omega)).collect()
+            };
+            if *omega == self.omega[..self.searched] {
+                return corrected(&self.values.curve(pair)[..self.searched]);
+            }
+            corrected(self.prepared.at(omega).curve(pair))
+        }
+    }
+
+    /// The same, between the samples by the cubic through four of them over ln omega; not a number outside.
+    pub fn interpolated(&self, pair: Pair, correction: GainDelay) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+        let (curve, start) = (self.values.curve(pair), self.omega[0].ln());
+        let step = (self.omega[1] / self.omega[0]).ln();
+        let between = move |omega: f64| {
+            let place = (omega.ln() - start) / step;
+            let last = (curve.len() - 1) as f64;
+            if !(-1e-9..=last + 1e-9).contains(&place) {
+                return Complex::new(f64::NAN, f64::NAN);
+            }
+            let from = (place.floor() - 1.0).clamp(0.0, last - 3.0);
+            cubic(&curve[from as usize..][..4], place - from) * correction.at(omega)
+        };
+        move |omega| omega.iter().map(|omega| between(*omega)).collect()
+    }
+}
+
+/// The cubic through four values at 0, 1, 2, 3 (Lagrange).
+fn cubic(values: &[Complex<f64>], at: f64) -> Complex<f64> {
+    let [a, b, c, d] = [at, at - 1.0, at - 2.0, at - 3.0];
+    values[0] * (-b * c * d / 6.0) + values[1] * (a * c * d / 2.0) - values[2] * (a * b * d / 2.0)
+        + values[3] * (a * b * c / 6.0)
 }

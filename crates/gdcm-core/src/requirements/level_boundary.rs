@@ -20,7 +20,7 @@ pub struct LevelBoundary {
 
 /// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`; each is checked as it is read.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Vec<LevelBoundary>", into = "Vec<LevelBoundary>")]
+#[serde(try_from = "Vec<LevelBoundary>")]
 pub struct LevelBoundaries(Vec<LevelBoundary>);
 
 /// Why boundaries cannot be drawn.
@@ -93,12 +93,6 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
     fn try_from(boundaries: Vec<LevelBoundary>) -> Result<Self, LevelBoundaryError> {
         boundaries.iter().enumerate().try_for_each(|(index, boundary)| boundary.check(index + 1))?;
         Ok(Self(boundaries))
-    }
-}
-
-impl From<LevelBoundaries> for Vec<LevelBoundary> {
-    fn from(boundaries: LevelBoundaries) -> Self {
-        boundaries.0
     }
 }
 

@@ -1,4 +1,4 @@
-//! The modes of models against those identified from flight (M17.3).
+//! The modes of models against those identified from flight, within tolerances that are in the engineer's hands (M17.3).
 //!
 //! ```text
 //! 1  pair the poles of every model with those of the identified one so that the sum of the distances is least (Poles view)
@@ -14,13 +14,15 @@
 use std::f64::consts::{LN_2, TAU};
 
 use nalgebra::Complex;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::{ModeName, ModeTolerance, ModeToleranceTable, NamedBy};
+use super::{ModeName, NamedBy, not_positive};
 use crate::dataset::Band;
 use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::identification::PoleEstimate;
+use crate::message_text::quoted;
 use crate::response::Mode;
+use crate::units::number;
 
 /// Distance, as a part of the pole's modulus, within which an estimate is that of a pole: the same model written otherwise.
 const SAME_POLE: f64 = 1e-3;
@@ -189,4 +191,252 @@ fn estimate_of<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a Pol
     let distance = |estimate: &PoleEstimate| (estimate.pole - mode.pole).norm();
     let nearest = estimates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     (distance(nearest) <= SAME_POLE * mode.frequency_rad_s).then_some(nearest)
+}
+
+/// One row of the table: the period, and of amplitude and damping one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModeTolerance {
+    /// What the source calls it ("long term").
+    pub response: String,
+    /// The modes that it is of.
+    pub modes: Vec<ModeName>,
+    /// Part of the flown period.
+    pub period: f64,
+    /// The same in seconds, the wider of the two; none where only the part holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period_s: Option<f64>,
+    /// Part of the flown time to half or double amplitude.
+    pub amplitude_time: f64,
+    /// Difference of the damping ratio.
+    pub damping_ratio: f64,
+    /// Entry of the source ("2.c.3.a").
+    #[serde(default)]
+    pub entry: String,
+}
+
+/// The table of tolerances of modes; each row is checked as it is read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<ModeTolerance>")]
+pub struct ModeToleranceTable(Vec<ModeTolerance>);
+
+/// A tolerance that is not above zero.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("tolerance of modes {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
+pub struct ModeToleranceError {
+    /// Which row, counted from 1.
+    pub row: usize,
+    /// What it is of.
+    pub response: String,
+    /// `period`, `period_s`, `amplitude_time` or `damping_ratio`.
+    pub name: &'static str,
+    /// What stands there.
+    pub found: f64,
+}
+
+impl ModeTolerance {
+    /// The tolerance of the period \[s\] about a flown one.
+    pub fn of_period_s(&self, period_s: f64) -> f64 {
+        (self.period * period_s).max(self.period_s.unwrap_or(0.0))
+    }
+
+    /// Whether `model` is within the tolerance about `flown`: period, and time to half or double amplitude or damping ratio.
+    pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
+        let differs = |of: fn(&ModeValues) -> Option<f64>| Some(((of(model)? - of(flown)?).abs(), of(flown)?.abs()));
+        let period = differs(|values| values.period_s).is_some_and(|(by, of)| by <= self.of_period_s(of));
+        let amplitude = differs(|values| values.time_to_half_s).is_some_and(|(by, of)| by <= self.amplitude_time * of);
+        let damping = differs(|values| values.damping_ratio).is_some_and(|(by, _)| by <= self.damping_ratio);
+        period && (amplitude || damping)
+    }
+
+    /// Whether the flown mode is known to within the tolerance itself.
+    pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
+        let within = |of: fn(&ModeValues) -> Option<f64>, most: f64| of(deviation).is_some_and(|sd| sd <= most);
+        let period_s = flown.period_s.map_or(0.0, |period_s| self.of_period_s(period_s));
+        let amplitude_s = flown.time_to_half_s.map_or(0.0, |time_s| self.amplitude_time * time_s.abs());
+        let amplitude = within(|values| values.time_to_half_s, amplitude_s);
+        within(|values| values.period_s, period_s)
+            && (amplitude || within(|values| values.damping_ratio, self.damping_ratio))
+    }
+
+    fn check(&self, row: usize) -> Result<(), ModeToleranceError> {
+        let values = [
+            ("period", Some(self.period)),
+            ("period_s", self.period_s),
+            ("amplitude_time", Some(self.amplitude_time)),
+            ("damping_ratio", Some(self.damping_ratio)),
+        ];
+        match not_positive(values) {
+            Some((name, found)) => Err(ModeToleranceError { row, response: self.response.clone(), name, found }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl ModeToleranceTable {
+    /// Its rows.
+    pub fn rows(&self) -> &[ModeTolerance] {
+        &self.0
+    }
+
+    /// The row of a mode, where it has one.
+    pub fn of(&self, mode: ModeName) -> Option<&ModeTolerance> {
+        self.0.iter().find(|row| row.modes.contains(&mode))
+    }
+}
+
+impl TryFrom<Vec<ModeTolerance>> for ModeToleranceTable {
+    type Error = ModeToleranceError;
+
+    fn try_from(rows: Vec<ModeTolerance>) -> Result<Self, ModeToleranceError> {
+        rows.iter().enumerate().try_for_each(|(index, row)| row.check(index + 1))?;
+        Ok(Self(rows))
+    }
+}
+
+impl Default for ModeToleranceTable {
+    /// 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term response) and 2.d.3.a (lateral-directional oscillations).
+    fn default() -> Self {
+        let row = |response: &str, mode, period_s, entry: &str| ModeTolerance {
+            response: response.to_owned(),
+            modes: vec![mode],
+            period: 0.1,
+            period_s,
+            amplitude_time: 0.1,
+            damping_ratio: 0.02,
+            entry: entry.to_owned(),
+        };
+        Self(vec![
+            row("long term", ModeName::Phugoid, None, "2.c.3.a"),
+            row("lateral-directional oscillation", ModeName::DutchRoll, Some(0.5), "2.d.3.a"),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, dmatrix};
+
+    use super::*;
+    use crate::dataset::StateSpace;
+    use crate::requirements::*;
+    use crate::response::modes;
+
+    fn pair(re: f64, im: f64) -> Vec<Mode> {
+        of(dmatrix![re, im; -im, re])
+    }
+
+    fn of(a: DMatrix<f64>) -> Vec<Mode> {
+        let n = a.nrows();
+        modes(&StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()).unwrap()
+    }
+
+    fn band() -> Band {
+        Band::new(0.5, 12.0).unwrap()
+    }
+
+    fn unnamed(modes: &[Mode]) -> ModelModes<'_> {
+        ModelModes { modes, states: &[] }
+    }
+
+    /// Verdict of a Dutch roll against a flown one of -0.4 + 2j.
+    fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
+        let (flown, model) = (pair(-0.4, 2.0), pair(re, im));
+        let rows =
+            compare_modes(unnamed(&flown), &[unnamed(&model)], estimates, band(), &ModeToleranceTable::default());
+        assert_eq!((rows.len(), rows[0].name), (1, Some(ModeName::DutchRoll)), "a conjugate pair is one row");
+        rows[0].verdicts[0]
+    }
+
+    fn estimate(sd_re: f64, sd_im: f64) -> PoleEstimate {
+        PoleEstimate { pole: Complex::new(-0.4, 2.0), sd_re, sd_im, determined: true }
+    }
+
+    #[test]
+    fn period_time_to_half_and_damping_are_those_of_the_pole() {
+        let values = ModeValues::of(&pair(-0.4, 2.0)[0]);
+        assert!((values.period_s.unwrap() - TAU / 2.0).abs() < 1e-14);
+        assert!((values.time_to_half_s.unwrap() - LN_2 / 0.4).abs() < 1e-14);
+        assert!((values.damping_ratio.unwrap() - 0.4 / 4.16_f64.sqrt()).abs() < 1e-14);
+        let growing = ModeValues::of(&of(dmatrix![0.1])[0]);
+        assert!(growing.period_s.is_none() && (growing.time_to_half_s.unwrap() + LN_2 / 0.1).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_mode_is_within_where_its_period_and_amplitude_or_damping_are() {
+        assert_eq!(verdict(-0.4, 2.0, &[]), ModeVerdict::Within);
+        // 3.14 s and 0.5 s more: 1.7255 rad/s. The damping ratio differs by 0.03, the time to half not at all.
+        assert_eq!(verdict(-0.4, 1.73, &[]), ModeVerdict::Within);
+        assert_eq!(verdict(-0.4, 1.72, &[]), ModeVerdict::Outside);
+        // Time to half 15 % off; the damping ratio by 0.0195 or by 0.029.
+        assert_eq!(verdict(-0.36, 1.99, &[]), ModeVerdict::Within);
+        assert_eq!(verdict(-0.34, 2.0, &[]), ModeVerdict::Outside);
+        assert_eq!(verdict(0.4, 2.0, &[]), ModeVerdict::Outside, "as fast, but growing");
+    }
+
+    #[test]
+    fn a_mode_that_is_known_less_well_than_the_tolerance_is_not_determined() {
+        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]), ModeVerdict::Within);
+        // A period of 3.14 s to 0.31 s is within 0.5 s; time to half to 25 %, damping to 0.045.
+        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]), ModeVerdict::NotDetermined);
+        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.01, 0.4)]), ModeVerdict::NotDetermined);
+        let by_records = PoleEstimate { determined: false, ..estimate(0.0, 0.0) };
+        assert_eq!(verdict(-0.4, 2.0, &[by_records]), ModeVerdict::NotDetermined);
+        let of_another = PoleEstimate { pole: Complex::new(-0.4, 3.0), ..by_records };
+        assert_eq!(verdict(-0.4, 2.0, &[of_another]), ModeVerdict::Within);
+    }
+
+    #[test]
+    fn deviations_are_those_of_moving_the_pole() {
+        let (sd_re, sd_im) = (1e-4, 2e-4);
+        let deviation = ModeValues::deviation(&pair(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
+        let half = |values: fn(&ModeValues) -> Option<f64>, re: f64, im: f64| {
+            let at = |sign: f64| values(&ModeValues::of(&pair(-0.4 + sign * re, 2.0 + sign * im)[0])).unwrap();
+            0.5 * (at(1.0) - at(-1.0))
+        };
+        for values in [|of: &ModeValues| of.period_s, |of| of.time_to_half_s, |of| of.damping_ratio] as [fn(&_) -> _; 3]
+        {
+            let expected = half(values, sd_re, 0.0).hypot(half(values, 0.0, sd_im));
+            // Third order of 1e-4.
+            assert!((values(&deviation).unwrap() / expected - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_mode_below_the_band_is_not_determined_and_one_without_a_tolerance_is_only_shown() {
+        let flown = of(dmatrix![-0.02, 0.2, 0.0; -0.2, -0.02, 0.0; 0.0, 0.0, -3.0]);
+        let rows = compare_modes(unnamed(&flown), &[unnamed(&flown)], &[], band(), &ModeToleranceTable::default());
+        let said: Vec<_> = rows.iter().map(|row| (row.name, row.is_determined, row.verdicts[0])).collect();
+        let expected = [
+            (Some(ModeName::Phugoid), false, ModeVerdict::NotDetermined),
+            (Some(ModeName::RollSubsidence), true, ModeVerdict::NoTolerance),
+        ];
+        assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn rows_are_named_by_the_physics_model_and_gaps_are_said() {
+        let (flown, physics) = (of(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]), pair(-0.5, 2.1));
+        let states = ["w".to_owned(), "q".to_owned()];
+        let physics = ModelModes { modes: &physics, states: &states };
+        let rows =
+            compare_modes(unnamed(&flown), &[physics, unnamed(&[])], &[], band(), &ModeToleranceTable::default());
+        assert_eq!((rows[0].name, rows[0].named_by), (Some(ModeName::ShortPeriod), NamedBy::States));
+        assert_eq!(rows[0].verdicts, [ModeVerdict::NoTolerance, ModeVerdict::NotPaired]);
+        assert_eq!((rows[1].name, rows[1].named_by), (Some(ModeName::RollSubsidence), NamedBy::Frequency));
+        assert_eq!(rows[1].models, [None, None]);
+        assert_eq!(compare_modes(unnamed(&[]), &[physics], &[], band(), &ModeToleranceTable::default()), []);
+    }
+
+    #[test]
+    fn a_table_of_modes_comes_back_as_it_was_and_a_wrong_row_is_refused() {
+        let text = serde_json::to_string(&ModeToleranceTable::default()).unwrap();
+        assert_eq!(serde_json::from_str::<ModeToleranceTable>(&text).unwrap(), ModeToleranceTable::default());
+        assert!(text.contains(r#""modes":["dutch-roll"],"period":0.1,"period_s":0.5"#), "{text}");
+        let wrong = text.replace("\"damping_ratio\":0.02", "\"damping_ratio\":0.0");
+        let words = serde_json::from_str::<ModeToleranceTable>(&wrong).unwrap_err().to_string();
+        assert!(
+            words.starts_with("tolerance of modes 1, \"long term\": expected damping_ratio above zero, found 0"),
+            "{words}"
+        );
+    }
 }

@@ -74,44 +74,28 @@ pub enum NamedBy {
     Frequency,
 }
 
-/// What a state of a model is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum StateKind {
-    Surge,
-    Sway,
-    Heave,
-    RollRate,
-    PitchRate,
-    YawRate,
-    Bank,
-    Pitch,
-    Heading,
-    CyclicFlap,
-}
-
-impl StateKind {
-    /// The kind of a state by its name: "q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"; none of any other.
-    fn of(name: &str) -> Option<Self> {
-        let lower = name.to_lowercase();
-        if lower.contains("flap") {
-            return Some(Self::CyclicFlap);
-        }
-        let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
-        let word: String = lower[..end].chars().filter(|letter| *letter != '_').collect();
-        Some(match word.trim_end_matches("dot") {
-            "u" | "ub" | "vx" => Self::Surge,
-            "v" | "vb" | "vy" | "beta" => Self::Sway,
-            "w" | "wb" | "vz" | "alpha" => Self::Heave,
-            "p" | "pb" => Self::RollRate,
-            "q" | "qb" => Self::PitchRate,
-            "r" | "rb" => Self::YawRate,
-            "phi" | "bank" => Self::Bank,
-            "theta" => Self::Pitch,
-            "psi" | "heading" => Self::Heading,
-            "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => Self::CyclicFlap,
-            _ => return None,
-        })
+/// What a state of a model is of by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): a body axis' usual letter, an attitude, or
+/// "flap" of the cyclic flap; none of any other.
+fn state_kind(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    if lower.contains("flap") {
+        return Some("flap");
     }
+    let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
+    let word: String = lower[..end].chars().filter(|letter| *letter != '_').collect();
+    Some(match word.trim_end_matches("dot") {
+        "u" | "ub" | "vx" => "u",
+        "v" | "vb" | "vy" | "beta" => "v",
+        "w" | "wb" | "vz" | "alpha" => "w",
+        "p" | "pb" => "p",
+        "q" | "qb" => "q",
+        "r" | "rb" => "r",
+        "phi" | "bank" => "phi",
+        "theta" => "theta",
+        "psi" | "heading" => "psi",
+        "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => "flap",
+        _ => return None,
+    })
 }
 
 impl ModeName {
@@ -126,29 +110,28 @@ impl ModeName {
     }
 
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
-        let kinds: Vec<Option<StateKind>> = states.iter().map(|name| StateKind::of(name)).collect();
-        let share = |of: &[StateKind]| -> f64 {
+        let kinds: Vec<Option<&str>> = states.iter().map(|name| state_kind(name)).collect();
+        let share = |of: &[&str]| -> f64 {
             let is_of = |state: usize| kinds.get(state).copied().flatten().is_some_and(|kind| of.contains(&kind));
             shares.iter().filter(|(state, _)| is_of(*state)).map(|(_, share)| share).sum()
         };
-        use StateKind::*;
         let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
-        if share(&[CyclicFlap]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
+        if share(&["flap"]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
             return Some(Self::RegressingFlap);
         }
-        let longitudinal = share(&[Surge, Heave, PitchRate, Pitch]);
-        let lateral = share(&[Sway, RollRate, YawRate, Bank, Heading]);
+        let longitudinal = share(&["u", "w", "q", "theta"]);
+        let lateral = share(&["v", "p", "r", "phi", "psi"]);
         if longitudinal.max(lateral) < FUSELAGE_SHARE {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
             // Of two real poles too, into which the oscillation can split.
-            (true, _) if share(&[Surge, Pitch]) > share(&[Heave, PitchRate]) => Some(Self::Phugoid),
+            (true, _) if share(&["u", "theta"]) > share(&["w", "q"]) => Some(Self::Phugoid),
             (true, true) => Some(Self::ShortPeriod),
-            (true, false) if share(&[PitchRate]) > share(&[Heave]) => Some(Self::PitchSubsidence),
+            (true, false) if share(&["q"]) > share(&["w"]) => Some(Self::PitchSubsidence),
             (true, false) => Some(Self::Heave),
             (false, true) => Some(Self::DutchRoll),
-            (false, false) if share(&[RollRate]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) if share(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
             (false, false) => (mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S).then_some(Self::Spiral),
         }
     }

@@ -14,7 +14,7 @@ use crate::units::ratio_to_db;
 /// measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
-    curves: PairTable<Vec<Complex<f64>>>,
+    pub(super) curves: PairTable<Vec<Complex<f64>>>,
 }
 
 impl FrequencyResponse {
@@ -52,16 +52,6 @@ impl FrequencyResponse {
     pub fn not_finite(&self) -> Vec<Pair> {
         let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());
         self.curves.iter().filter(|(_, curve)| not_finite(curve)).map(|(pair, _)| pair).collect()
-    }
-
-    /// Makes a response zero at every frequency.
-    pub(super) fn clear(&mut self, pair: Pair) {
-        self.curves[pair].fill(Complex::new(0.0, 0.0));
-    }
-
-    /// Multiplies a response by a factor at each frequency.
-    pub(super) fn multiply(&mut self, pair: Pair, factors: &[Complex<f64>]) {
-        self.curves[pair].iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
     }
 }
 
@@ -212,15 +202,13 @@ pub struct PolarResponse {
 impl PolarResponse {
     /// Magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
-        let curve = |pair| PolarCurve::of(response.curve(pair));
-        Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
+        Self { curves: response.curves.map(|_, curve| PolarCurve::of(curve)) }
     }
 
     /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
     /// than the response itself.
     pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
-        let curve = |pair| if marked[pair] { PolarCurve::of(response.curve(pair)) } else { None };
-        Self { curves: PairTable::from_fn(response.outputs(), response.inputs(), curve) }
+        Self { curves: response.curves.map(|pair, curve| if marked[pair] { PolarCurve::of(curve) } else { None }) }
     }
 
     /// The responses that are numerically nothing: their peak over the band, \[dB\], lies 120 dB (1e-6) below the greatest of

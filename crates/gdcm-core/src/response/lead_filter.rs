@@ -50,9 +50,12 @@ impl From<LeadOrder> for usize {
 /// servo of `1 / b` rad/s put in the place of one of `1 / a` rad/s (M15.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFilter {
-    order: LeadOrder,
-    zero_s: f64,
-    lag_s: f64,
+    /// Its order.
+    pub order: LeadOrder,
+    /// Time constant of its numerator, `a` \[s\].
+    pub zero_s: f64,
+    /// Time constant of its denominator, `b` \[s\].
+    pub lag_s: f64,
 }
 
 impl LeadFilter {
@@ -66,27 +69,12 @@ impl LeadFilter {
         Self { order, zero_s: lag_s + apart_s, lag_s }
     }
 
-    /// Its order.
-    pub fn order(self) -> LeadOrder {
-        self.order
-    }
-
     /// Lead time at low frequency, `l` \[s\].
     pub fn lead_s(self) -> f64 {
         match self.order {
             LeadOrder::First => self.zero_s - self.lag_s,
             LeadOrder::Second => SQRT_2 * (self.zero_s - self.lag_s),
         }
-    }
-
-    /// Time constant of its numerator, `a` \[s\].
-    pub fn zero_s(self) -> f64 {
-        self.zero_s
-    }
-
-    /// Time constant of its denominator, `b` \[s\].
-    pub fn lag_s(self) -> f64 {
-        self.lag_s
     }
 
     /// `omega_1 = 1 / a` \[rad/s\]: the servo that it takes out.

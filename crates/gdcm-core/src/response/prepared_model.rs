@@ -106,8 +106,8 @@ impl PreparedModel {
     pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
         let mut response = self.undelayed(omega);
         for (pair, &delay_s) in self.delays_s.iter().flat_map(|delays_s| delays_s.iter()).filter(|(_, by)| **by > 0.0) {
-            let turns: Vec<_> = omega.iter().map(|omega| Complex::from_polar(1.0, -omega * delay_s)).collect();
-            response.multiply(pair, &turns);
+            let turned = |omega: &f64| Complex::from_polar(1.0, -omega * delay_s);
+            response.curves[pair].iter_mut().zip(omega).for_each(|(value, omega)| *value *= turned(omega));
         }
         response
     }
@@ -118,7 +118,8 @@ impl PreparedModel {
                 let at: Vec<_> = omega.iter().map(|omega| shifted(*omega, *sample_time_s)).collect();
                 let mut response = Arch::new().dispatch(Elimination { form, at: &at });
                 // Rounding errors stand where the input does not reach the output.
-                connected.iter().filter(|(_, connected)| !**connected).for_each(|(pair, _)| response.clear(pair));
+                let apart = connected.iter().filter(|(_, connected)| !**connected);
+                apart.for_each(|(pair, _)| response.curves[pair].fill(Complex::new(0.0, 0.0)));
                 response
             }
             Source::TooLarge { outputs, inputs } => {

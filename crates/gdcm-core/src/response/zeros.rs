@@ -93,14 +93,10 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
 fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
     let states = leading_states(model, pair);
     let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
-    let mut b = model.b().column(pair.input).select_rows(&states);
-    let mut c = model.c().row(pair.output).select_columns(&states);
-    let mut columns = DMatrix::from_column_slice(b.nrows(), 1, b.as_slice());
-    let mut rows = DMatrix::from_row_slice(1, c.ncols(), c.as_slice());
-    balance(&mut a, &mut columns, &mut rows);
-    b.copy_from(&columns.column(0));
-    c.copy_from(&rows.row(0));
-    SingleResponse { a, b, c: c.transpose(), d: model.d()[(pair.output, pair.input)] }
+    let mut b = model.b().columns(pair.input, 1).select_rows(&states);
+    let mut c = model.c().rows(pair.output, 1).select_columns(&states);
+    balance(&mut a, &mut b, &mut c);
+    SingleResponse { a, b: b.column(0).into_owned(), c: c.row(0).transpose(), d: model.d()[(pair.output, pair.input)] }
 }
 
 /// Takes the zeros at infinity out of a Hessenberg model, and counts them; `None` where nothing is left.

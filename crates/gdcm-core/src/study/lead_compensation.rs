@@ -150,7 +150,7 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let top = number(LeadPrice::of(leads)?.limit_rad_s);
-    let states: usize = leads.filters().iter().filter_map(|(_, filter)| Some((*filter)?.order().number())).sum();
+    let states: usize = leads.filters().iter().filter_map(|(_, filter)| Some((*filter)?.order.number())).sum();
     Some(format!("The leads add {states} states. Do not use the corrected model above {top} rad/s."))
 }
 

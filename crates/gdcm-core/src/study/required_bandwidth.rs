@@ -15,8 +15,7 @@ use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
 use crate::dataset::{self, Band, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
-    Metric, NoMetric, PairBand, PhaseLine, ResponseAt, ResponseDeviation, SampledModel, search_frequencies,
-    substitution_bar,
+    Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel, search_frequencies, substitution_bar,
 };
 use crate::response::GainDelay;
 use crate::uncertainty::{Figures, Scalar, student_quantile};
@@ -156,7 +155,6 @@ impl<'a> ReadModel<'a> {
         };
         let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
         let deviation = bands.map(|bands| PairBand { bands, pair });
-        let deviation = deviation.as_ref().map(|deviation| deviation as &dyn ResponseDeviation);
         let bandwidth = Bandwidth::of(&attitude, &BandwidthSettings { above_band, ..settings }, deviation);
         Ok((bandwidth, attitude.reversed_phase_deg()))
     }

@@ -1,8 +1,10 @@
-//! The error bar of one value (M13.3): its settings, and the variances that it is made of.
+//! The error bar of one value (M13.3): its settings, and the variances that it is made of; whether two conditions differ significantly
+//! (M13.4), and the distributions of Student, Fisher and chi-squared.
 
 use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-use super::{Measurement, student_quantile};
+use super::Measurement;
 
 /// Why a part is what it is, where that is not the spread of the models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -209,6 +211,101 @@ impl UncertaintySettings {
     }
 }
 
+/// The difference of one figure between two conditions, beside what their bundles explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Difference {
+    /// `delta = q_c - q_c'`.
+    pub delta: f64,
+    /// `u_delta`, from the parts of both.
+    pub deviation: f64,
+    /// Degrees of freedom; none where neither has a spread.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+impl Difference {
+    /// The difference of two figures of two conditions.
+    pub fn of(first: &Bar, second: &Bar) -> Self {
+        let deviation = (first.variance() + second.variance()).sqrt();
+        Self {
+            delta: first.value - second.value,
+            deviation,
+            degrees_of_freedom: satterthwaite(first.parts().chain(second.parts())),
+        }
+    }
+
+    /// `|delta| / u_delta`: multiple of what is expected; none where they have no spread.
+    pub fn ratio(&self) -> Option<f64> {
+        self.degrees_of_freedom.map(|_| self.delta.abs() / self.deviation)
+    }
+
+    /// How likely so great a ratio is where there is no difference.
+    pub fn p(&self) -> Option<f64> {
+        Some(student_two_sided(self.ratio()?, self.degrees_of_freedom?))
+    }
+}
+
+/// Holm's correction of probabilities that are looked at together, in their order.
+///
+/// S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979).
+pub fn holm(probabilities: &[f64]) -> Vec<f64> {
+    let mut rising: Vec<usize> = (0..probabilities.len()).collect();
+    rising.sort_by(|&a, &b| probabilities[a].total_cmp(&probabilities[b]));
+    let mut corrected = vec![0.0; probabilities.len()];
+    let mut most = 0.0_f64;
+    for (rank, place) in rising.into_iter().enumerate() {
+        most = most.max((probabilities.len() - rank) as f64 * probabilities[place]).min(1.0);
+        corrected[place] = most;
+    }
+    corrected
+}
+
+/// Degrees of freedom from which Student's distribution is taken for the normal one: they differ by 2e-8 there.
+const NORMAL_FROM: f64 = 1e8;
+
+/// Degrees of freedom from which Student's quantile is expanded about the normal one: four terms leave 1e-12 there, and the inverse of
+/// the incomplete beta function does not end for some that are larger.
+const EXPANDED_FROM: f64 = 1e3;
+
+/// Student's quantile `t(nu)` at `(1 + level) / 2`, `nu` any number from 1 up; the normal one where it is infinite.
+///
+/// From a thousand degrees on by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
+pub fn student_quantile(level: f64, degrees: f64) -> f64 {
+    let p = 0.5 * (1.0 + level);
+    match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
+        Ok(student) if degrees < EXPANDED_FROM => student.inverse_cdf(p),
+        _ => expanded(Normal::standard().inverse_cdf(p), degrees),
+    }
+}
+
+fn expanded(z: f64, degrees: f64) -> f64 {
+    let square = z * z;
+    let terms = [
+        (square + 1.0) / 4.0,
+        ((5.0 * square + 16.0) * square + 3.0) / 96.0,
+        (((3.0 * square + 19.0) * square + 17.0) * square - 15.0) / 384.0,
+        ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0) / 92160.0,
+    ];
+    z * terms.iter().rev().fold(0.0, |sum, term| (sum + term) / degrees) + z
+}
+
+/// How likely a ratio this large or larger, of either sign, is where there is nothing: `2 (1 - T_nu(|ratio|))`.
+pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
+    match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
+        Ok(student) if degrees < NORMAL_FROM => 2.0 * student.sf(ratio.abs()),
+        _ => 2.0 * Normal::standard().sf(ratio.abs()),
+    }
+}
+
+/// How likely a ratio of variances this large or larger is where both are one: `1 - F_(above, below)(ratio)`.
+pub fn fisher_upper(ratio: f64, above: f64, below: f64) -> Option<f64> {
+    Some(FisherSnedecor::new(above, below).ok()?.sf(ratio))
+}
+
+/// Quantile of chi squared at `p`.
+pub fn chi_squared_quantile(p: f64, degrees: f64) -> Option<f64> {
+    Some(ChiSquared::new(degrees).ok()?.inverse_cdf(p))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,11 +350,6 @@ mod tests {
         let cut = Bar { value: 0.0, range: [0.0, 0.01], ..bar(0.03, 0.02) };
         assert_eq!(cut.interval(0.9), Some([0.0, 0.01]));
     }
-}
-
-#[cfg(test)]
-mod part_tests {
-    use super::*;
 
     fn own(variances: &[f64], counts: &[f64]) -> Vec<Option<VarianceComponent>> {
         let part = |(&variance, &degrees): (&f64, &f64)| {
@@ -301,5 +393,60 @@ mod part_tests {
             VarianceComponent { variance: 1e-200, degrees_of_freedom: 5.0 },
         ]);
         assert!((only.unwrap() - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn holm_multiplies_the_least_by_all_and_never_falls() {
+        assert_eq!(holm(&[0.03, 0.01, 0.04, 0.5]), [0.09, 0.04, 0.09, 0.5]);
+        assert_eq!(holm(&[0.6, 0.7]), [1.0, 1.0]);
+        assert_eq!(holm(&[]), Vec::<f64>::new());
+    }
+
+    /// Quantiles by SciPy (independent numpy code).
+    #[test]
+    fn quantiles_are_those_of_the_tables() {
+        let t_95 = [
+            (1.0, 6.31375151468),
+            (1.7, 3.30361514324),
+            (2.0, 2.91998558035),
+            (3.4, 2.24467111039),
+            (6.0, 1.94318028052),
+            (12.3, 1.77867254624),
+            (24.0, 1.71088207991),
+            (48.6, 1.67681682504),
+            (999.0, 1.64638034543),
+            (1000.0, 1.64637881729),
+            (2.5e5, 1.64485972205),
+            (1.8e7, 1.64485371161),
+            (f64::INFINITY, 1.64485362695),
+            (1e12, 1.64485362695),
+        ];
+        for (degrees, expected) in t_95 {
+            // The reference has twelve digits.
+            assert!((student_quantile(0.9, degrees) - expected).abs() < 1e-9, "t of {degrees}");
+        }
+        assert_eq!(student_quantile(0.9, 0.3), student_quantile(0.9, 1.0), "never fewer than one degree");
+        for (ratio, degrees, expected) in
+            [(2.1, 6.0, 0.0804776876047), (5.4, 26.3, 1.13128376312e-05), (-0.4, 3.2, 0.714374785591)]
+        {
+            assert!((student_two_sided(ratio, degrees) / expected - 1.0).abs() < 1e-9, "p of {ratio}");
+        }
+        for (ratio, above, below, expected) in
+            [(2.31, 6.0, 72.5, 0.0426460967923), (0.9, 8.0, 100.0, 0.51965499353), (7.4, 6.0, 40.2, 2.2368214366e-05)]
+        {
+            assert!((fisher_upper(ratio, above, below).unwrap() / expected - 1.0).abs() < 1e-8, "F of {ratio}");
+        }
+        for (p, degrees, expected) in [
+            (0.05, 1.0, 0.00393214000002),
+            (0.05, 2.0, 0.102586588775),
+            (0.05, 6.0, 1.63538289433),
+            (0.05, 8.0, 2.7326367935),
+            (0.95, 1.0, 3.84145882069),
+            (0.95, 2.0, 5.99146454711),
+            (0.95, 6.0, 12.5915872437),
+            (0.95, 8.0, 15.5073130559),
+        ] {
+            assert!((chi_squared_quantile(p, degrees).unwrap() / expected - 1.0).abs() < 1e-8, "chi of {p}, {degrees}");
+        }
     }
 }

@@ -1,10 +1,13 @@
-//! Least squares of a few conditions, and the bands of a schedule of `ln k` that they give (M13.6).
+//! Least squares of a few conditions: what the scatter of one figure about them is made of (M13.5), the bands of a schedule of `ln k`
+//! that they give (M13.6), and whether a second variable says something of the gains that airspeed does not (M13.7).
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{VarianceDecomposition, student_quantile};
+use super::{
+    Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile, student_two_sided,
+};
 
 /// A column of which less than this is left beside the others is a combination of them.
 const DEPENDENT: f64 = 1e-9;
@@ -123,6 +126,183 @@ impl ScheduleBand {
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
         BandWidths { confidence: self.half * h.sqrt(), scatter: self.half * (1.0 + h).sqrt() }
+    }
+}
+
+/// The scatter of one figure about a fit, split into what the bundles make of it and the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VarianceDecomposition {
+    /// Degrees of freedom of the scatter, `f = n - r`.
+    pub freedom: usize,
+    /// `S^2 = sum e^2 / f`.
+    pub scatter: f64,
+    /// `B_phys`, expected from not knowing the trims.
+    pub trim: f64,
+    /// `B_id`, expected from the identification.
+    pub identification: f64,
+    /// Degrees of freedom of `B`; none where the bundles have no spread.
+    pub degrees_of_freedom: Option<f64>,
+}
+
+impl VarianceDecomposition {
+    /// The split of these conditions' figures about the fit of `design`; none where it leaves no degrees of freedom.
+    pub fn of(design: &Design, bars: &[Bar]) -> Option<Self> {
+        let freedom = design.freedom();
+        if freedom == 0 || bars.len() != design.conditions() {
+            return None;
+        }
+        let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
+        let f = freedom as f64;
+        let square: f64 = design.fit(&figures).residuals.iter().map(|residual| residual * residual).sum();
+        let hats = design.hat_values();
+        let expected = |part: fn(&Bar) -> Option<VarianceComponent>| -> Vec<VarianceComponent> {
+            let of_bar = |(bar, hat): (&Bar, &f64)| Some(part(bar)?.scaled((1.0 - hat) / f));
+            bars.iter().zip(&hats).filter_map(of_bar).collect()
+        };
+        let (trim, identification) = (expected(|bar| bar.trim), expected(|bar| bar.identification));
+        let sum = |parts: &[VarianceComponent]| parts.iter().map(|part| part.variance).sum::<f64>();
+        Some(Self {
+            freedom,
+            scatter: square / f,
+            trim: sum(&trim),
+            identification: sum(&identification),
+            degrees_of_freedom: satterthwaite(trim.into_iter().chain(identification)),
+        })
+    }
+
+    /// `B = B_phys + B_id`.
+    pub fn explained(&self) -> f64 {
+        self.trim + self.identification
+    }
+
+    /// `rest^2 = max(0, S^2 - B)`: what neither bundle makes.
+    pub fn unexplained(&self) -> f64 {
+        (self.scatter - self.explained()).max(0.0)
+    }
+
+    /// Shares of trim, identification and rest in `max(S^2, B)`; none where there is neither scatter nor spread.
+    pub fn shares(&self) -> Option<[f64; 3]> {
+        let whole = self.scatter.max(self.explained());
+        (whole > 0.0).then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
+    }
+
+    /// `sqrt(F)`, `F = S^2 / B`: multiple of what is expected; none where they have no spread.
+    pub fn ratio(&self) -> Option<f64> {
+        self.degrees_of_freedom.map(|_| (self.scatter / self.explained()).sqrt())
+    }
+
+    /// How likely so great a scatter is where the bundles explain all of it.
+    pub fn p(&self) -> Option<f64> {
+        fisher_upper(self.scatter / self.explained(), self.freedom as f64, self.degrees_of_freedom?)
+    }
+
+    /// Interval of the rest, as a standard deviation: `sqrt(max(0, f S^2 / chi^2_f(p) - B))` at `p = (1 +- level) / 2`.
+    pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
+        let f = self.freedom as f64;
+        let end = |p: f64| {
+            let quantile = chi_squared_quantile(p, f).filter(|quantile| *quantile > 0.0)?;
+            Some((f * self.scatter / quantile - self.explained()).max(0.0).sqrt())
+        };
+        Some([end(0.5 * (1.0 + level))?, end(0.5 * (1.0 - level))?])
+    }
+}
+
+/// The effect of a second variable on one figure, beside the schedule with airspeed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondVariableEffect {
+    /// From the lowest to the highest value, `2 gamma`.
+    pub effect: f64,
+    /// Half-width `2 t se` of its interval: an effect smaller than that could not have been seen.
+    pub visible: f64,
+    /// How likely so great an effect is where there is none.
+    pub p: f64,
+    /// Leave-one-condition-out error, rms over the conditions, without the variable; none where no condition can be left out.
+    pub left_out_without: Option<f64>,
+    /// The same with it.
+    pub left_out_with: Option<f64>,
+}
+
+/// Why there is no effect to tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SecondVariableError {
+    /// A condition does not say it, or all say the same.
+    #[error("the conditions do not carry two values of it")]
+    NotVaried,
+    /// It is a function of airspeed in these conditions.
+    #[error("its effect and that of airspeed cannot be told apart")]
+    NotToldApart,
+    /// As many coefficients as conditions.
+    #[error("there are too few conditions to see it beside the airspeed")]
+    TooFewConditions,
+}
+
+/// The values scaled to -1 to 1; none where there are not two.
+pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let width = greatest - least;
+    (width > 0.0 && width.is_finite())
+        .then(|| values.iter().map(|value| (2.0 * value - least - greatest) / width).collect())
+}
+
+/// The columns of a schedule without and with a second variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SecondVariableDesign {
+    without: Design,
+    with: Design,
+}
+
+impl SecondVariableDesign {
+    /// `values`, one for each condition, beside the columns of `rows`.
+    ///
+    /// # Errors
+    /// [`SecondVariableError`] where their effect cannot be told.
+    pub fn of(rows: &[Vec<f64>], values: &[f64]) -> Result<Self, SecondVariableError> {
+        let scaled = scaled(values).ok_or(SecondVariableError::NotVaried)?;
+        let extended: Vec<Vec<f64>> =
+            rows.iter().zip(scaled).map(|(row, value)| row.iter().copied().chain([value]).collect()).collect();
+        let without = Design::new(rows).ok_or(SecondVariableError::NotToldApart)?;
+        if without.freedom() < 2 {
+            return Err(SecondVariableError::TooFewConditions);
+        }
+        let with = Design::new(&extended).ok_or(SecondVariableError::NotToldApart)?;
+        Ok(Self { without, with })
+    }
+
+    /// The effect on these figures, one for each condition.
+    pub fn effect(&self, figures: &[f64], level: f64) -> SecondVariableEffect {
+        let Self { without, with } = self;
+        let fit = with.fit(figures);
+        let freedom = with.freedom() as f64;
+        let variance = fit.residuals.iter().map(|residual| residual * residual).sum::<f64>() / freedom;
+        let error = (variance * with.last_variance()).sqrt();
+        let coefficient = fit.coefficients.last().copied().unwrap_or_default();
+        // An exact fit leaves nothing that chance could have made.
+        let ratio = if coefficient == 0.0 { 0.0 } else { coefficient / error };
+        let errors = (without.left_out_errors(figures), with.left_out_errors(figures));
+        let both: Vec<(f64, f64)> = errors.0.iter().zip(&errors.1).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+        let rms = |of: fn(&(f64, f64)) -> f64| {
+            let square: f64 = both.iter().map(|pair| of(pair).powi(2)).sum();
+            (!both.is_empty()).then(|| (square / both.len() as f64).sqrt())
+        };
+        SecondVariableEffect {
+            effect: 2.0 * coefficient,
+            visible: 2.0 * student_quantile(level, freedom) * error,
+            p: student_two_sided(ratio, freedom),
+            left_out_without: rms(|pair| pair.0),
+            left_out_with: rms(|pair| pair.1),
+        }
+    }
+}
+
+impl SecondVariableEffect {
+    /// Whether the schedule needs the variable: improbable by chance after Holm's correction, and it foresees a condition that
+    /// is left out better by 10 % or more.
+    pub fn is_needed(&self, p_holm: f64, level: f64) -> bool {
+        /// What is left of the leave-one-condition-out error, at most.
+        const LEFT: f64 = 0.9;
+        let foresees = self.left_out_without.zip(self.left_out_with);
+        p_holm < 1.0 - level && foresees.is_some_and(|(without, with)| with <= LEFT * without)
     }
 }
 

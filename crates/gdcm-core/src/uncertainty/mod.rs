@@ -15,15 +15,9 @@
 //! ```
 
 mod bar;
-mod difference;
 mod least_squares;
-mod scatter;
-mod second_variable;
 mod spread;
 
 pub use bar::*;
-pub use difference::*;
 pub use least_squares::*;
-pub use scatter::*;
-pub use second_variable::*;
 pub use spread::*;

@@ -5,7 +5,6 @@ use gdcm_core::correction::Channel;
 use gdcm_core::couplings::CouplingMatrices;
 use gdcm_core::dataset::Dataset;
 use gdcm_core::message_text::shortened;
-use gdcm_core::response::LeadFilter;
 use gdcm_core::schedule::{Regression, Schedule, ScheduledQuantity};
 
 use super::programs::comment;
@@ -83,7 +82,7 @@ impl Scheduled<'_> {
         let figures = &leads.taus_s[channel];
         let at = |kt: f64| {
             let tau_s = figures.at(&self.schedule.airspeeds, kt).clamp(leads.bounds_s[0], leads.bounds_s[1]);
-            leads.design.filter(tau_s).map_or(leads.design.lag_s(), LeadFilter::zero_s)
+            leads.design.filter(tau_s).map_or(leads.design.lag_s(), |filter| filter.zero_s)
         };
         if figures.figures().len() == 1 || least == most {
             return Some(Curve::constant(at(least)));

@@ -28,18 +28,17 @@
 //! 10: convex envelopes term by term. The tangent plane bounds the convex underestimator wherever Newton's method has come to, so
 //! the bound needs no convergence; its rounding is counted term by term ([`Rounded`]).
 
-mod newton;
 mod node_exclusion;
 mod objective;
 mod search;
 mod term;
-#[cfg(test)]
-mod tests;
 mod underestimator;
 
-pub(crate) use newton::*;
 use node_exclusion::*;
 pub(crate) use objective::*;
 pub use search::*;
 pub(crate) use term::*;
 use underestimator::*;
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,7 @@
-//! The objective after the constraints are eliminated, as a function of the scales.
+//! The objective after the constraints are eliminated, as a function of the scales, and Newton's method down to a local minimum over
+//! their box.
 
-use super::{Rounded, Term};
+use super::{Effort, Rounded, Term};
 
 /// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding of the first two.
 #[derive(Clone, Debug, Default)]
@@ -33,7 +34,7 @@ impl Expansion {
     /// Adds a function of `s_to - s_from` with this slope and curvature.
     pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
         let (scales, from, to) = (self.gradient.len(), term.from, term.to);
-        for (scale, slope) in [(to, slope), (from, Rounded { value: -slope.value, error: slope.error })] {
+        for (scale, slope) in [(to, slope), (from, -slope)] {
             let mut sum = Rounded { value: self.gradient[scale], error: self.gradient_error[scale] };
             sum.add(slope);
             (self.gradient[scale], self.gradient_error[scale]) = (sum.value, sum.error);
@@ -146,5 +147,303 @@ impl Differentiable for Objective {
 
     fn work(&self) -> u64 {
         self.terms.len() as u64
+    }
+}
+
+/// A projected Newton method: each step minimises the quadratic model over the box exactly, so that the set of active bounds is
+/// right as soon as the model is. Clipping an unconstrained step instead stalls at corners.
+#[derive(Clone, Debug)]
+pub(crate) struct Newton {
+    /// The function at the last point.
+    pub(crate) reached: Expansion,
+    trial: Expansion,
+    model: QuadraticModel,
+    next: Vec<f64>,
+}
+
+impl Newton {
+    /// Room for so many scales.
+    pub(crate) fn new(scales: usize) -> Self {
+        Self {
+            reached: Expansion::zero(scales),
+            trial: Expansion::zero(scales),
+            model: QuadraticModel::new(scales),
+            next: vec![0.0; scales],
+        }
+    }
+
+    /// Moves `scales` (inside the box) down until `enough(scales, expansion)`, until rounding ends it or until the effort is
+    /// stopped; `reached` is then the function there.
+    pub(crate) fn minimise(
+        &mut self,
+        function: &impl Differentiable,
+        (lower, upper): (&[f64], &[f64]),
+        scales: &mut [f64],
+        effort: &Effort<'_>,
+        mut enough: impl FnMut(&[f64], &Expansion) -> bool,
+    ) {
+        // Newton's method needs about ten steps; a flat start or a run along an inflection a few tens.
+        const STEPS: usize = 100;
+        expand(function, scales, Curvature::True, &mut self.reached, effort);
+        let mut near = 0;
+        for _ in 0..STEPS {
+            if effort.is_stopped() || enough(scales, &self.reached) {
+                return;
+            }
+            for scale in 0..scales.len() {
+                self.model.low[scale] = lower[scale] - scales[scale];
+                self.model.high[scale] = upper[scale] - scales[scale];
+            }
+            let Some((decrease, true_curvature)) = self.minimise_model(function, scales, effort) else {
+                return;
+            };
+            // Where Newton's method is this near, three steps end at the rounding of the slopes, also across the end of an
+            // envelope.
+            near += usize::from(true_curvature && decrease <= 1e-13 * self.reached.value.value.abs());
+            if !self.search_line(function, (lower, upper), scales, decrease, effort) || near == 3 {
+                return;
+            }
+        }
+    }
+
+    /// The decrease of the model's step: with the true curvature (`true`) where that is positive definite, else with its
+    /// magnitude.
+    fn minimise_model(
+        &mut self,
+        function: &impl Differentiable,
+        scales: &[f64],
+        effort: &Effort<'_>,
+    ) -> Option<(f64, bool)> {
+        if let Some(decrease) = self.model.minimise(&self.reached, effort) {
+            return Some((decrease, true));
+        }
+        expand(function, scales, Curvature::Magnitude, &mut self.reached, effort);
+        Some((self.model.minimise(&self.reached, effort)?, false))
+    }
+
+    /// Takes the longest of the step's halvings that goes down; `false` where none does, or where the step is nothing.
+    fn search_line(
+        &mut self,
+        function: &impl Differentiable,
+        (lower, upper): (&[f64], &[f64]),
+        scales: &mut [f64],
+        decrease: f64,
+        effort: &Effort<'_>,
+    ) -> bool {
+        let longest = self.model.step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
+        if longest == 0.0 {
+            return false;
+        }
+        let here = self.reached.value;
+        let noise = 4.0 * f64::EPSILON * here.value.abs() + 0.25 * here.error;
+        let mut fraction = 1.0;
+        for _ in 0..40 {
+            self.place(fraction, (lower, upper), scales);
+            expand(function, &self.next, Curvature::True, &mut self.trial, effort);
+            if self.trial.value.value <= here.value - 1e-4 * fraction * decrease + noise {
+                scales.copy_from_slice(&self.next);
+                std::mem::swap(&mut self.reached, &mut self.trial);
+                // A step that no longer moves the scales by more than their rounding is the last.
+                return fraction * longest > 1e-15;
+            }
+            fraction *= 0.5;
+        }
+        false
+    }
+
+    /// Writes the point a fraction of the step away, exactly on the bounds that the full step reaches.
+    fn place(&mut self, fraction: f64, (lower, upper): (&[f64], &[f64]), scales: &[f64]) {
+        for scale in 0..scales.len() {
+            let step = self.model.step[scale];
+            self.next[scale] = if fraction == 1.0 && step == self.model.low[scale] {
+                lower[scale]
+            } else if fraction == 1.0 && step == self.model.high[scale] {
+                upper[scale]
+            } else {
+                (scales[scale] + fraction * step).clamp(lower[scale], upper[scale])
+            };
+        }
+    }
+}
+
+fn expand(
+    function: &impl Differentiable,
+    scales: &[f64],
+    curvature: Curvature,
+    into: &mut Expansion,
+    effort: &Effort<'_>,
+) {
+    effort.spend(function.work());
+    function.expand(scales, curvature, into);
+}
+
+/// The quadratic model of a step: `minimise` fills `step`.
+#[derive(Clone, Debug)]
+struct QuadraticModel {
+    scales: usize,
+    /// Least step of each scale, at most 0.
+    low: Vec<f64>,
+    /// Greatest step of each scale, at least 0.
+    high: Vec<f64>,
+    /// The step found.
+    step: Vec<f64>,
+    slope: Vec<f64>,
+    free: Vec<usize>,
+    is_free: Vec<bool>,
+    factor: Vec<f64>,
+    move_to: Vec<f64>,
+}
+
+impl QuadraticModel {
+    /// Room for `scales` scales.
+    fn new(scales: usize) -> Self {
+        Self {
+            scales,
+            low: vec![0.0; scales],
+            high: vec![0.0; scales],
+            step: vec![0.0; scales],
+            slope: vec![0.0; scales],
+            free: Vec::with_capacity(scales),
+            is_free: vec![false; scales],
+            factor: vec![0.0; scales * scales],
+            move_to: vec![0.0; scales],
+        }
+    }
+
+    /// Minimises `g d + d H d / 2`, of gradient and Hessian at a point, over `low <= d <= high` by a primal active-set method: exact,
+    /// finite.
+    ///
+    /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite on a face that the method visits. Nodes with
+    /// `low == high` stay.
+    fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
+        let (gradient, hessian) = (&at.gradient, &at.hessian);
+        self.step.fill(0.0);
+        self.slope.copy_from_slice(gradient);
+        for scale in 0..self.scales {
+            let slope = gradient[scale];
+            let stopped = (self.low[scale] >= 0.0 && slope >= 0.0) || (self.high[scale] <= 0.0 && slope <= 0.0);
+            self.is_free[scale] = self.low[scale] < self.high[scale] && !stopped;
+        }
+        let ridge = 1e-12 * (0..self.scales).map(|scale| hessian[scale * self.scales + scale]).fold(0.0, f64::max);
+        // Each pass adds a stop or releases one after a decrease; 8 n passes are far above what is ever needed.
+        for _ in 0..8 * self.scales + 8 {
+            effort.spend(self.work());
+            if effort.is_stopped() {
+                return None;
+            }
+            self.solve_free(hessian, ridge)?;
+            let (fraction, blocking) = self.longest_step();
+            for &scale in &self.free {
+                self.step[scale] += fraction * self.move_to[scale];
+            }
+            self.update_slope(gradient, hessian);
+            if let Some((scale, end)) = blocking {
+                self.step[scale] = end;
+                self.is_free[scale] = false;
+            } else if let Some(scale) = self.worst_stop() {
+                self.is_free[scale] = true;
+            } else {
+                break;
+            }
+        }
+        let change: f64 =
+            (0..self.scales).map(|scale| 0.5 * (gradient[scale] + self.slope[scale]) * self.step[scale]).sum();
+        Some(-change)
+    }
+
+    /// Work of one pass: a Cholesky factorisation of what is free, and the products with the whole.
+    fn work(&self) -> u64 {
+        let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
+        1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
+    }
+
+    /// `move_to = -H_ff^-1 slope_f` over the free scales, by Cholesky.
+    fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
+        self.free.clear();
+        self.free.extend((0..self.scales).filter(|&scale| self.is_free[scale]));
+        let size = self.free.len();
+        for row in 0..size {
+            for column in 0..=row {
+                let mut entry = hessian[self.free[row] * self.scales + self.free[column]];
+                if row == column {
+                    entry += ridge;
+                }
+                for inner in 0..column {
+                    entry -= self.factor[row * self.scales + inner] * self.factor[column * self.scales + inner];
+                }
+                self.factor[row * self.scales + column] = if row > column {
+                    entry / self.factor[column * self.scales + column]
+                } else if entry > 0.1 * ridge {
+                    entry.sqrt()
+                } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0 && ridge == 0.0 {
+                    // Nothing bends anywhere: the objective does not depend on the scales.
+                    1.0
+                } else {
+                    return None;
+                };
+            }
+        }
+        for row in 0..size {
+            let mut entry = -self.slope[self.free[row]];
+            for inner in 0..row {
+                entry -= self.factor[row * self.scales + inner] * self.move_to[self.free[inner]];
+            }
+            self.move_to[self.free[row]] = entry / self.factor[row * self.scales + row];
+        }
+        for row in (0..size).rev() {
+            let mut entry = self.move_to[self.free[row]];
+            for inner in row + 1..size {
+                entry -= self.factor[inner * self.scales + row] * self.move_to[self.free[inner]];
+            }
+            self.move_to[self.free[row]] = entry / self.factor[row * self.scales + row];
+        }
+        Some(())
+    }
+
+    /// The fraction of the move that the box allows, with the scale that stops it and where.
+    fn longest_step(&self) -> (f64, Option<(usize, f64)>) {
+        let mut fraction = 1.0;
+        let mut blocking = None;
+        for &scale in &self.free {
+            let target = self.step[scale] + self.move_to[scale];
+            let end = if target < self.low[scale] {
+                self.low[scale]
+            } else if target > self.high[scale] {
+                self.high[scale]
+            } else {
+                continue;
+            };
+            let allowed = ((end - self.step[scale]) / self.move_to[scale]).max(0.0);
+            if allowed < fraction || blocking.is_none() {
+                fraction = allowed.min(fraction);
+                blocking = Some((scale, end));
+            }
+        }
+        (fraction, blocking)
+    }
+
+    fn update_slope(&mut self, gradient: &[f64], hessian: &[f64]) {
+        for scale in 0..self.scales {
+            let row = &hessian[scale * self.scales..(scale + 1) * self.scales];
+            self.slope[scale] = gradient[scale] + row.iter().zip(&self.step).map(|(h, d)| h * d).sum::<f64>();
+        }
+    }
+
+    /// The stopped scale whose release helps most, or `None` at the minimum.
+    fn worst_stop(&self) -> Option<usize> {
+        let scale = self.slope.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
+        let mut worst = None;
+        let mut greatest = 1e-14 * scale;
+        for scale in 0..self.scales {
+            if self.is_free[scale] || self.low[scale] >= self.high[scale] {
+                continue;
+            }
+            let inward = if self.step[scale] <= self.low[scale] { -self.slope[scale] } else { self.slope[scale] };
+            if inward > greatest {
+                greatest = inward;
+                worst = Some(scale);
+            }
+        }
+        worst
     }
 }

@@ -1,5 +1,7 @@
 //! The terms of the objective, functions of the difference of two scales, with rounding errors that are known.
 
+use std::ops::Neg;
+
 /// What the objective makes of `u = s_to - s_from`.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
@@ -112,7 +114,7 @@ pub(super) fn both(ahead: Derivatives, behind: Derivatives) -> Derivatives {
     let mut value = ahead.value;
     value.add(behind.value);
     let mut slope = ahead.slope;
-    slope.add(Rounded { value: -behind.slope.value, error: behind.slope.error });
+    slope.add(-behind.slope);
     Derivatives { value, slope, curvature: ahead.curvature + behind.curvature }
 }
 
@@ -212,10 +214,10 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
     let surely_convex = |u: f64| {
         let z = u.exp();
         let parts = [
-            2.0 * forward.weight() * z.powi(2),
-            -forward.weight() * forward.centre() * z,
-            -backward.weight() * backward.centre() / z,
-            2.0 * backward.weight() / (z * z),
+            2.0 * forward.weight * z.powi(2),
+            -forward.weight * forward.centre * z,
+            -backward.weight * backward.centre / z,
+            2.0 * backward.weight / (z * z),
         ];
         let relative = 4.0 * forward.relative(u).max(backward.relative(u));
         parts.iter().map(|part| part - relative * part.abs()).sum::<f64>() > 0.0
@@ -235,8 +237,8 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
 /// The positive `z` where the quartic of [`concave_interval`] is least: the root of `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, by
 /// Newton's method from the right, where the cubic is convex and increasing.
 fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
-    let square = 3.0 * forward.centre() / 8.0;
-    let constant = backward.weight() * backward.centre() / (8.0 * forward.weight());
+    let square = 3.0 * forward.centre / 8.0;
+    let constant = backward.weight * backward.centre / (8.0 * forward.weight);
     let mut z = square + constant.cbrt();
     for _ in 0..60 {
         let step = (z * z * (z - square) - constant) / (z * (3.0 * z - 2.0 * square));
@@ -298,76 +300,55 @@ pub(crate) struct Exponential {
 
 /// One entry `weight (gain - product e^v)^2`, the product known to a relative `error`.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+pub(crate) struct ProductEntry {
     weight: f64,
     gain: f64,
     product: f64,
     error: f64,
 }
 
-/// The entries that share a logarithm, gathered before they become one [`Exponential`].
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Group {
-    entries: Vec<Entry>,
-}
-
-/// `e^logarithm` with its relative rounding, of a logarithm known to `error`.
-pub(crate) fn product(logarithm: f64, error: f64) -> (f64, f64) {
-    // The error of the logarithm is the product's own, and the exponential is good to an epsilon.
-    (logarithm.exp(), error + f64::EPSILON)
-}
-
-/// `weight (gain - product)^2` of an entry that no scale changes.
-pub(crate) fn fixed_square(weight: f64, gain: f64, (product, relative): (f64, f64)) -> Rounded {
-    let difference = gain - product;
-    Rounded::square(weight, difference, relative * product + f64::EPSILON * difference.abs(), 0.0)
-}
-
-impl Group {
-    /// Adds `weight (gain - e^logarithm e^v)^2`, the logarithm known to `error`.
-    pub(crate) fn add(&mut self, weight: f64, gain: f64, logarithm: f64, error: f64) {
-        let (product, error) = product(logarithm, error);
-        self.entries.push(Entry { weight, gain, product, error });
+impl ProductEntry {
+    /// `weight (gain - e^logarithm e^v)^2`.
+    pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
+        // The error of the logarithm is the product's own, and the exponential is good to an epsilon.
+        Self { weight, gain, product: logarithm.value.exp(), error: logarithm.error + f64::EPSILON }
     }
 
-    /// The function of the group, and the sum where it is least.
-    ///
-    /// The latter is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
-    pub(crate) fn exponential(&self) -> (Exponential, Rounded) {
-        let total = |term: fn(&Entry) -> f64| self.entries.iter().map(term).sum::<f64>();
-        let weight = total(|entry| entry.weight * entry.product * entry.product);
-        if weight <= 0.0 {
-            return (Exponential::default(), Rounded::default());
-        }
-        let centre = total(|entry| entry.weight * entry.gain * entry.product) / weight;
-        let mut least = Rounded::default();
-        let mut worst = 0.0_f64;
-        for entry in &self.entries {
-            let met = (entry.product * centre, entry.error + f64::EPSILON);
-            least.add(fixed_square(entry.weight, entry.gain, met));
-            worst = worst.max(entry.error);
-        }
-        // A sum of n positive terms is exact to n roundings of half an epsilon; the centre is the quotient of two of them, and
-        // holds the product once more than twice.
-        let rounding = 3.0 * worst + (self.entries.len() as f64 + 4.0) * f64::EPSILON;
-        (Exponential { weight, centre, rounding }, least)
+    /// The square where `v` is 0.
+    pub(crate) fn square(&self) -> Rounded {
+        let difference = self.gain - self.product;
+        let error = self.error * self.product + f64::EPSILON * difference.abs();
+        Rounded::square(self.weight, difference, error, 0.0)
     }
 }
 
 impl Exponential {
+    /// The entries that share a logarithm as one function, and their sum where it is least.
+    ///
+    /// The latter is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
+    pub(crate) fn of(entries: &[ProductEntry]) -> (Self, Rounded) {
+        let total = |term: fn(&ProductEntry) -> f64| entries.iter().map(term).sum::<f64>();
+        let weight = total(|entry| entry.weight * entry.product * entry.product);
+        if weight <= 0.0 {
+            return Default::default();
+        }
+        let centre = total(|entry| entry.weight * entry.gain * entry.product) / weight;
+        let mut least = Rounded::default();
+        let mut worst = 0.0_f64;
+        for entry in entries {
+            let met = ProductEntry { product: entry.product * centre, error: entry.error + f64::EPSILON, ..*entry };
+            least.add(met.square());
+            worst = worst.max(entry.error);
+        }
+        // A sum of n positive terms is exact to n roundings of half an epsilon; the centre is the quotient of two of them, and
+        // holds the product once more than twice.
+        let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
+        (Self { weight, centre, rounding }, least)
+    }
+
     /// Whether there is nothing in it.
     pub(crate) fn is_zero(&self) -> bool {
         self.weight == 0.0
-    }
-
-    /// Weight of the square.
-    pub(crate) fn weight(&self) -> f64 {
-        self.weight
-    }
-
-    /// `e^v` where the function is least.
-    pub(crate) fn centre(&self) -> f64 {
-        self.centre
     }
 
     /// The logarithm below which the function is concave.
@@ -422,6 +403,14 @@ impl Exponential {
 pub(crate) struct Rounded {
     pub(crate) value: f64,
     pub(crate) error: f64,
+}
+
+impl Neg for Rounded {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, ..self }
+    }
 }
 
 impl Rounded {

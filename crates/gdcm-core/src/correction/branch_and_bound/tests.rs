@@ -5,8 +5,8 @@ use dashu_float::round::mode::HalfEven;
 use proptest::prelude::*;
 
 use super::*;
-use crate::correction::Components;
 use crate::correction::{Bounds, Problem};
+use crate::correction::{Components, Held};
 use crate::correction::{GainObjective, Quantity};
 use crate::correction::{floor, objective};
 use crate::dataset::{Pair, PairTable};
@@ -33,27 +33,24 @@ struct Sample {
 
 impl Sample {
     fn new(problem: Problem) -> Self {
-        let coordinate = problem.coordinate();
-        let held: Vec<(Pair, f64)> = problem.held_entries().map(|(pair, delta)| (pair, coordinate.of(delta))).collect();
-        let components = Components::new(problem.delta.outputs(), problem.delta.inputs(), &held, problem.range());
+        let components = Components::new(&Held::of(&problem));
         let objective = objective(&problem, &components);
         Self { problem, components, objective }
     }
 
     /// The exact logarithms of the gains: an input's is its component's scale, a held output's what its entry leaves.
     fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
-        let input =
-            |placed: &crate::correction::Placement| exact(placed.offset.value) + exact(scales[placed.component]);
-        let inputs: Vec<Exact> = self.components.inputs.iter().map(input).collect();
-        let output = |index: usize| {
+        let node = |placed: &crate::correction::Placement| exact(placed.offset.value) + exact(scales[placed.component]);
+        let (inputs, outputs) = self.components.sides();
+        let inputs: Vec<Exact> = inputs.iter().map(node).collect();
+        let output = |(index, placed): (usize, &crate::correction::Placement)| {
             let held = self.problem.held_entries().find(|(pair, _)| pair.output == index);
-            let placed = self.components.outputs[index];
             match held {
                 Some((pair, delta)) => exact(delta).ln() - &inputs[pair.input],
-                None => exact(placed.offset.value) - exact(scales[placed.component]),
+                None => -node(placed),
             }
         };
-        let outputs = (0..self.components.outputs.len()).map(output).collect();
+        let outputs = outputs.iter().enumerate().map(output).collect();
         (inputs, outputs)
     }
 

@@ -2,18 +2,12 @@
 
 use super::*;
 
-/// What stands for a term over the node: the term itself where it is convex, else the convex envelopes of its exponentials.
-#[derive(Clone, Copy, Debug)]
-enum Under {
-    Itself,
-    Envelopes { forward: Option<Line>, backward: Option<Line> },
-}
-
 /// A term's underestimator with the range of its difference. Newton's method keeps to the box of the node only, so beyond the range
 /// the underestimator goes on along its tangent and bends up: anything convex is right there, and this keeps the minimum near.
 #[derive(Clone, Copy, Debug)]
 struct TermUnder {
-    under: Under,
+    /// The lines in the convex envelopes of its two exponentials; none where the term is convex over the node and stands for itself.
+    envelopes: Option<[Option<Line>; 2]>,
     range: (f64, f64),
 }
 
@@ -21,20 +15,17 @@ impl TermUnder {
     fn of(term: &Term, region: &DifferenceBounds) -> Self {
         let (low, high) = region.range(term.from, term.to);
         let range = (low, high.max(low));
-        let under = match &term.function {
+        let envelopes = match &term.function {
             Function::Exponential { forward, backward, .. } if !term.function.is_convex_over(range) => {
-                Under::Envelopes {
-                    forward: envelope(forward, range),
-                    backward: envelope(backward, (-range.1, -range.0)),
-                }
+                Some([envelope(forward, range), envelope(backward, (-range.1, -range.0))])
             }
-            _ => Under::Itself,
+            _ => None,
         };
-        Self { under, range }
+        Self { envelopes, range }
     }
 
     fn is_exact(&self) -> bool {
-        matches!(self.under, Under::Itself)
+        self.envelopes.is_none()
     }
 
     /// The term's difference at `scales`, kept inside the range.
@@ -44,11 +35,10 @@ impl TermUnder {
 
     /// The underestimator of `function` at `u` in the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
-        match (function, &self.under) {
-            (
-                Function::Exponential { forward, backward, .. },
-                Under::Envelopes { forward: ahead, backward: behind },
-            ) => both(enveloped(forward, ahead.as_ref(), u), enveloped(backward, behind.as_ref(), -u)),
+        match (function, &self.envelopes) {
+            (Function::Exponential { forward, backward, .. }, Some([ahead, behind])) => {
+                both(enveloped(forward, ahead.as_ref(), u), enveloped(backward, behind.as_ref(), -u))
+            }
             _ => function.at(u),
         }
     }
@@ -342,13 +332,10 @@ fn chord((low, start): (f64, Rounded), (high, end): (f64, Rounded)) -> Line {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::{Exponential, Group};
     use super::*;
 
     fn exponential(weight: f64, centre: f64) -> Exponential {
-        let mut group = Group::default();
-        group.add(weight, centre, 0.0, 0.0);
-        group.exponential().0
+        Exponential::of(&[ProductEntry::new(weight, centre, Rounded::default())]).0
     }
 
     fn objective(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Objective {

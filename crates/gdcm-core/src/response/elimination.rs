@@ -1,19 +1,58 @@
-//! The complex rows of an elimination, one frequency to a lane of a vector register, with threshold pivoting: which of two
-//! rows clears a column.
+//! The frequency response of a state-space model: its states are eliminated from the system matrix.
+//!
+//! ```text
+//! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
+//!    and reverse the states. What is left, the same for every frequency s = j omega / alpha, is
+//!        [ G - s I  K  ]      G: zero below its first subdiagonal h_k, real
+//!        [ L        D' ]      H' = D' - L (G - s I)^-1 K
+//! 2  u <- first row of [G - s I, K], the active row; w <- each row of [L D'] but the first
+//! 3  for k = 1 ... n - 1, with the next row r = [G - s I, K]_(k+1) / h_k, which is real but for -s / h_k:
+//! 4     if |u_k| > tau |h_k| in any of eight neighbouring frequencies, then in those with |u_k| > |h_k| interchange:
+//!          w <- w - (w_k / u_k) u;   u <- h_k r - (h_k / u_k) u
+//! 5     else: w <- w - w_k r;   u <- u - u_k r
+//! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] in the same way; what is left is H'
+//! ```
+//!
+//! A frequency is a lane of a vector register. Hessenberg form: Laub, IEEE Trans. Automatic Control 26(2), 1981; tau is the
+//! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
 
 use nalgebra::Complex;
-use pulp::{Simd, WithSimd};
+use pulp::{Arch, Simd, WithSimd};
 
-use super::{ComplexLanes, HessenbergForm};
-use crate::dataset::PairTable;
+use super::HessenbergForm;
+use crate::dataset::{PairTable, StateSpace};
 use crate::response::FrequencyResponse;
 
+/// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
+///
+/// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then eliminated from the
+/// system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p)) operations. As many frequencies are solved at once as a
+/// vector of the processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
+///
+/// Eight neighbouring frequencies choose their pivots together: a value depends on those of its eight, by rounding
+/// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
+/// entries are changed by less than 1e-10 of the largest of the balanced A, in practice by some 1e-13, so the relative error
+/// grows as `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite. Entries
+/// beyond [`super::LargeEntry`]'s limit may overflow.
+///
+/// The matrices alone count, as those of continuous time: for a model with [`crate::dataset::Timing`] see
+/// [`super::PreparedModel`].
+pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
+    evaluate_on(Arch::new(), model, omega)
+}
+
+/// [`evaluate`] on a given instruction set: for tests and benchmarks.
+pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
+    let at: Vec<_> = omega.iter().map(|omega| Complex::new(0.0, *omega)).collect();
+    arch.dispatch(Elimination { form: &HessenbergForm::of(arch, model.a().clone(), model), at: &at })
+}
+
 /// `H(s)` of a reduced model, to be evaluated with the vectors of an instruction set.
-pub struct Elimination<'a> {
+pub(super) struct Elimination<'a> {
     /// The model.
-    pub form: &'a HessenbergForm,
+    pub(super) form: &'a HessenbergForm,
     /// Each `s` \[rad/s\].
-    pub at: &'a [Complex<f64>],
+    pub(super) at: &'a [Complex<f64>],
 }
 
 /// Frequencies that choose their pivots together, whatever the length of a vector.
@@ -210,7 +249,7 @@ const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
 /// The one entry of a column of G below the diagonal, `h`, and how it is eliminated.
 #[derive(Clone, Copy, Debug)]
-pub struct Subdiagonal {
+pub(super) struct Subdiagonal {
     /// `h`; zero where that is negligible.
     pub entry: f64,
     /// What the row of `h` is divided by, so that it has a one in place of `h`: `h`, or one where that is negligible.
@@ -293,12 +332,168 @@ impl<S: Simd> Interchange<S> {
     }
 }
 
+/// One complex number for each lane; real and imaginary parts in a vector register each.
+///
+/// Aligned to a cache line: a 512-bit load across two lines costs twice.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+struct ComplexLanes<S: Simd> {
+    /// Real parts.
+    re: S::f64s,
+    /// Imaginary parts.
+    im: S::f64s,
+}
+
+impl<S: Simd> ComplexLanes<S> {
+    /// The same real number in every lane.
+    #[inline(always)]
+    fn real(simd: S, value: f64) -> Self {
+        Self { re: simd.splat_f64s(value), im: simd.splat_f64s(0.0) }
+    }
+
+    /// `self - factor real`: 2 fused operations.
+    #[inline(always)]
+    fn minus_real_product(self, simd: S, factor: Self, real: S::f64s) -> Self {
+        Self {
+            re: simd.negate_mul_add_e_f64s(factor.re, real, self.re),
+            im: simd.negate_mul_add_e_f64s(factor.im, real, self.im),
+        }
+    }
+
+    /// `self + left right`: 4 fused operations.
+    #[inline(always)]
+    fn plus_product(self, simd: S, left: Self, right: Self) -> Self {
+        let re = simd.mul_add_e_f64s(left.re, right.re, self.re);
+        let im = simd.mul_add_e_f64s(left.im, right.re, self.im);
+        Self { re: simd.negate_mul_add_e_f64s(left.im, right.im, re), im: simd.mul_add_e_f64s(left.re, right.im, im) }
+    }
+
+    /// `self - other`.
+    #[inline(always)]
+    fn minus(self, simd: S, other: Self) -> Self {
+        Self { re: simd.sub_f64s(self.re, other.re), im: simd.sub_f64s(self.im, other.im) }
+    }
+
+    /// The number in a lane.
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Complex<f64> {
+        let part = |part: &S::f64s| bytemuck::cast_slice::<_, f64>(std::slice::from_ref(part))[lane];
+        Complex::new(part(&self.re), part(&self.im))
+    }
+
+    /// `self - left right`: 4 fused operations.
+    #[inline(always)]
+    fn minus_product(self, simd: S, left: Self, right: Self) -> Self {
+        let Self { re, im } = self.minus_real_product(simd, left, right.re);
+        Self { re: simd.mul_add_e_f64s(left.im, right.im, re), im: simd.negate_mul_add_e_f64s(left.re, right.im, im) }
+    }
+
+    /// `self other`.
+    #[inline(always)]
+    fn product(self, simd: S, other: Self) -> Self {
+        let re = simd.mul_f64s(self.re, other.re);
+        let im = simd.mul_f64s(self.re, other.im);
+        Self { re: simd.negate_mul_add_e_f64s(self.im, other.im, re), im: simd.mul_add_e_f64s(self.im, other.re, im) }
+    }
+
+    /// `self scale`, with a real scale for each lane.
+    #[inline(always)]
+    fn scaled(self, simd: S, scale: S::f64s) -> Self {
+        Self { re: simd.mul_f64s(self.re, scale), im: simd.mul_f64s(self.im, scale) }
+    }
+
+    /// `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
+    #[inline(always)]
+    fn reciprocal(self, simd: S) -> Self {
+        let inverse = simd.div_f64s(simd.splat_f64s(1.0), self.square(simd));
+        Self { re: simd.mul_f64s(self.re, inverse), im: simd.neg_f64s(simd.mul_f64s(self.im, inverse)) }
+    }
+
+    /// `|self|^2`.
+    #[inline(always)]
+    fn square(self, simd: S) -> S::f64s {
+        simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re))
+    }
+
+    /// `chosen` in the lanes of `mask`, `self` in the others.
+    #[inline(always)]
+    fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
+        Self { re: simd.select_f64s(mask, chosen.re, self.re), im: simd.select_f64s(mask, chosen.im, self.im) }
+    }
+}
+
 #[cfg(test)]
-mod response_tests {
-    use super::*;
-    use crate::dataset::StateSpace;
+mod tests {
     use nalgebra::{DMatrix, dmatrix};
-    use pulp::{Arch, Scalar};
+    use pulp::Scalar;
+
+    use super::*;
+    use crate::dataset::Pair;
+
+    fn siso(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: f64) -> StateSpace {
+        StateSpace::new(a, b, c, dmatrix![d]).unwrap()
+    }
+
+    fn oscillator() -> StateSpace {
+        siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0)
+    }
+
+    fn only(response: FrequencyResponse) -> Complex<f64> {
+        response.curve(Pair::new(0, 0))[0]
+    }
+
+    #[test]
+    fn a_first_order_lag_has_its_known_response() {
+        // 1 / (j omega + 2) at omega = 3: (2 - 3j) / 13.
+        let value = only(evaluate(&siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0), &[3.0]));
+        assert!((value - Complex::new(2.0 / 13.0, -3.0 / 13.0)).norm() < 1e-16);
+    }
+
+    #[test]
+    fn a_model_of_order_zero_is_its_feed_through() {
+        let empty = siso(DMatrix::zeros(0, 0), DMatrix::zeros(0, 1), DMatrix::zeros(1, 0), 2.5);
+        assert_eq!(only(evaluate(&empty, &[1.0])), Complex::new(2.5, 0.0));
+    }
+
+    #[test]
+    fn an_undamped_oscillator_at_its_own_frequency_is_not_finite() {
+        assert!(!only(evaluate(&oscillator(), &[2.0])).is_finite());
+    }
+
+    #[test]
+    fn a_pole_on_the_grid_leaves_the_other_frequencies_alone() {
+        let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
+        let response = evaluate(&oscillator(), &omega);
+        for (omega, value) in omega.iter().zip(response.curve(Pair::new(0, 0))) {
+            // 1 / (4 - omega^2); a handful of operations, of which the difference amplifies rounding up to 8 times.
+            let expected = 1.0 / (4.0 - omega * omega);
+            assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
+            assert!(*omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(), "{omega}");
+        }
+    }
+
+    #[test]
+    fn units_of_inputs_and_outputs_do_not_matter() {
+        let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
+        let plain = only(evaluate(&siso(a.clone(), dmatrix![1.0; 0.5], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+        for exponent in [-800, 800] {
+            let unit = 2.0_f64.powi(exponent);
+            let scaled = only(evaluate(&siso(a.clone(), dmatrix![unit; 0.5 * unit], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+            // A power of two: nothing is rounded.
+            assert_eq!(scaled, plain * unit);
+        }
+    }
+
+    #[test]
+    fn units_of_the_states_do_not_matter() {
+        let (a, b, c) = (dmatrix![-1.0, 2.0; -3.0, -0.5], dmatrix![1.0; 0.5], dmatrix![1.0, -2.0]);
+        let scale = DMatrix::from_diagonal(&nalgebra::dvector![1e-9, 1e9]);
+        let inverse = DMatrix::from_diagonal(&nalgebra::dvector![1e9, 1e-9]);
+        let plain = only(evaluate(&siso(a.clone(), b.clone(), c.clone(), 0.1), &[1.3]));
+        let scaled = only(evaluate(&siso(&scale * a * &inverse, scale * b, c * inverse, 0.1), &[1.3]));
+        // The scaling itself rounds each entry once.
+        assert!((plain - scaled).norm() < 1e-14 * plain.norm());
+    }
 
     type Values = PairTable<Vec<Complex<f64>>>;
 
@@ -475,11 +670,6 @@ mod response_tests {
             assert!(difference(&values, &sum) < 1e-14);
         }
     }
-}
-
-#[cfg(test)]
-mod pivot_tests {
-    use super::*;
 
     #[test]
     fn an_entry_that_is_negligible_always_asks_for_an_interchange() {

@@ -1,7 +1,7 @@
 //! Matrices as text: one in a file, or several under their names, as programs print them.
 
 use crate::text::columns::{TextTable, comment, is_rule, line_fault, read_table};
-use crate::text::separator::{cell_number, excerpt, lines, refuse_binary};
+use crate::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
 use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// Matrices read from a text.
@@ -80,7 +80,7 @@ impl Reading<'_> {
             matrix.scale = scale;
             return Ok(());
         }
-        let numbers = line.split_whitespace().filter(|word| is_number(word)).count();
+        let numbers = line.split_whitespace().filter(|word| is_number_word(word)).count();
         let words = line.split_whitespace().count();
         let labelled = self.found.last().is_some_and(|matrix| matrix.labelled);
         let cut = line.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest);
@@ -168,16 +168,16 @@ impl Reading<'_> {
     }
 }
 
-fn is_number(word: &str) -> bool {
+fn is_number_word(word: &str) -> bool {
     let word = word.trim_end_matches([',', ';']);
-    !word.is_empty() && [false, true].iter().any(|&comma| cell_number(word, comma).is_some())
+    !word.is_empty() && is_number(word)
 }
 
 /// Whether a line consists of numbers, whatever stands between them.
 fn row_of_numbers(line: &str) -> bool {
     let mut words =
         line.split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|').filter(|w| !w.is_empty());
-    words.clone().next().is_some() && words.all(is_number)
+    words.clone().next().is_some() && words.all(is_number_word)
 }
 
 /// The rows of a part; faults name the line of the whole text.
@@ -234,8 +234,7 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
     let end = line.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).unwrap_or(line.len());
     let (name, behind) = line.split_at(end);
-    let numeric = [false, true].iter().any(|&comma| cell_number(name, comma).is_some());
-    if numeric || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+    if is_number(name) || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
         return None;
     }
     let behind = behind.trim_start();

@@ -2,7 +2,6 @@
 
 mod column_meaning;
 mod columns;
-mod complex_cells;
 mod frequency_columns;
 mod heading;
 mod literals;
@@ -18,12 +17,11 @@ use crate::variables::ReadingBudget;
 
 pub(crate) use column_meaning::says_quantity;
 pub(crate) use columns::{TextTable, read_table};
-pub(crate) use complex_cells::split_complex;
 pub use frequency_columns::UnsaidUnit;
 pub(crate) use frequency_columns::{FrequencyColumns, RecognisedResponse, ResponsePoints, Unrecognised};
 pub(crate) use matrix_text::{read_matrices, read_matrix};
 pub(crate) use separator::{decode, sections};
-pub(crate) use word_columns::{NumberedText, numbered_words};
+pub(crate) use word_columns::{NumberedText, numbered_words, split_complex};
 
 /// MATLAB's language.
 pub(crate) struct Literals;

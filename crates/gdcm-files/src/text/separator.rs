@@ -46,14 +46,26 @@ impl Separator {
         Cells { rest: Some(line), separator: self }
     }
 
-    fn is(self, character: char) -> bool {
+    /// The sign that is written between cells.
+    pub(super) fn sign(self) -> char {
         match self {
-            Separator::Tab => character == '\t',
-            Separator::Semicolon => character == ';',
-            Separator::Pipe => character == '|',
-            Separator::Comma => character == ',',
-            Separator::Blanks => character.is_whitespace(),
+            Separator::Tab => '\t',
+            Separator::Semicolon => ';',
+            Separator::Pipe => '|',
+            Separator::Comma => ',',
+            Separator::Blanks => ' ',
         }
+    }
+
+    /// Cells as a line; one that holds the sign stands in quotes.
+    pub(super) fn line(self, cells: impl Iterator<Item = String>) -> String {
+        let sign = self.sign();
+        let cell = |cell: String| if cell.contains(sign) { format!("\"{cell}\"") } else { cell };
+        cells.map(cell).collect::<Vec<_>>().join(&String::from(sign))
+    }
+
+    fn is(self, character: char) -> bool {
+        if self == Separator::Blanks { character.is_whitespace() } else { character == self.sign() }
     }
 }
 
@@ -131,6 +143,11 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
         return Some(number);
     }
     if is_missing(cell) { Some(f64::NAN) } else { spelled_otherwise(cell, decimal_comma) }
+}
+
+/// Whether a cell is a number, or says that there is none, with either decimal mark.
+pub(super) fn is_number(cell: &str) -> bool {
+    [false, true].iter().any(|&decimal_comma| cell_number(cell, decimal_comma).is_some())
 }
 
 fn is_missing(cell: &str) -> bool {

@@ -37,8 +37,7 @@ pub use dataset_file::{
     load_dataset_within, save_dataset, write_example,
 };
 pub use exports::{
-    About, EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, Exporter, check_export,
-    write_export,
+    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export,
 };
 pub use figure_file::{csv_text, figure_format, save_tables, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};

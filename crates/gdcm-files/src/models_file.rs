@@ -74,7 +74,6 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
 pub(super) fn found_models(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Option<Vec<FoundModel>> {
     let read = |format: Format| {
         let (text, _) = format.decode::<ModelsText>(text, path, budget).ok()?;
-        format.check_read(&text.format, text.version, path).ok()?;
         Some(text.models)
     };
     let models = read(MODELS).or_else(|| read(IDENTIFIED))?;

@@ -103,7 +103,7 @@ fn write_rows(requirements: &Requirements, time_histories: &TimeHistories, file:
 }
 
 /// What a number is of: the first ten cells of a row.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Subject<'a> {
     question: &'a str,
     condition: ConditionId,
@@ -149,9 +149,7 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
         model: &finding.model,
         output: &finding.output,
         input: &finding.input,
-        mode: "",
-        record: "",
-        tolerance: "",
+        ..Subject::default()
     };
     let row = |(name, value)| {
         let interval = finding.interval.get(name).copied();
@@ -197,11 +195,8 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
             airspeed_kt: finding.airspeed_kt,
             role,
             model: &numbers.model,
-            output: "",
-            input: "",
             mode: &mode,
-            record: "",
-            tolerance: "",
+            ..Subject::default()
         };
         let why = |name: &str| numbers.absent.get(name).copied().unwrap_or_default().to_owned();
         numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
@@ -218,11 +213,7 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
         airspeed_kt: finding.airspeed_kt,
         role: finding.role.name(),
         model: &finding.model,
-        output: "",
-        input: "",
-        mode: "",
-        record: "",
-        tolerance: "",
+        ..Subject::default()
     };
     let absent: &BTreeMap<&'static str, String> = &finding.absent;
     let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
@@ -237,11 +228,9 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         airspeed_kt: finding.airspeed_kt,
         role: finding.role.name(),
         model: &finding.model,
-        output: "",
         input: finding.moved_input.as_deref().unwrap_or_default(),
-        mode: "",
         record: &finding.record,
-        tolerance: "",
+        ..Subject::default()
     };
     let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
         (None, _) => "no output is an angle, a rate, a speed or an acceleration".to_owned(),
@@ -300,7 +289,6 @@ pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), Fil
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
-    TOLERANCES.check_read(&text.format, text.version, path)?;
     let refused = |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
     let table = ToleranceTable::new(text.source, text.tolerances);
     Ok((table.map_err(|error| FileError::content(path, refused(error)))?, cautions))

@@ -284,7 +284,6 @@ pub(super) fn study_from(
     budget: &ReadingBudget<'_>,
 ) -> Result<OpenedStudy, FileError> {
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
-    FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
     let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
         .map_err(|error| FileError::content(path, error))?;

@@ -126,7 +126,67 @@ pub struct Object {
     pub records: StructArray,
 }
 
+impl TextArray {
+    /// One text.
+    pub fn one(text: impl Into<String>) -> Self {
+        Self { shape: vec![1, 1], texts: vec![text.into()] }
+    }
+}
+
 impl Value {
+    /// A text.
+    pub fn text(text: impl Into<String>) -> Self {
+        Self::Text(TextArray::one(text))
+    }
+
+    /// A real number.
+    pub fn number(number: f64) -> Self {
+        Self::Array(Array::matrix(1, 1, vec![number]))
+    }
+
+    /// True or false.
+    pub fn truth(truth: bool) -> Self {
+        let number = f64::from(u8::from(truth));
+        Self::Array(Array { kind: ElementKind::Logical, ..Array::matrix(1, 1, vec![number]) })
+    }
+
+    /// An array without elements.
+    pub fn empty() -> Self {
+        Self::Array(Array::matrix(0, 0, Vec::new()))
+    }
+
+    /// What is there but cannot be read, and why.
+    pub fn opaque(class: impl Into<String>, why: impl Into<String>) -> Self {
+        Self::Opaque { class: class.into(), why: why.into() }
+    }
+
+    /// The values that lie in this one.
+    pub(crate) fn inner(&self) -> impl Iterator<Item = &Self> {
+        let (values, fields): (&[Self], &[(String, Vec<Self>)]) = match self {
+            Self::Cell(cell) => (&cell.values, &[]),
+            Self::Struct(records) | Self::Object(Object { records, .. }) => (&[], &records.fields),
+            Self::Array(_) | Self::Text(_) | Self::Opaque { .. } => (&[], &[]),
+        };
+        values.iter().chain(fields.iter().flat_map(|(_, values)| values))
+    }
+
+    /// Bytes that it takes without the values in it, rounded up.
+    pub(crate) fn own_memory(&self) -> u64 {
+        let text = |text: &String| size_of::<String>() + text.len();
+        let shape = |shape: &[usize]| size_of_val(shape);
+        let bytes = match self {
+            Self::Array(array) => shape(&array.shape) + array.len() * if array.im.is_some() { 16 } else { 8 },
+            Self::Text(texts) => shape(&texts.shape) + texts.texts.iter().map(text).sum::<usize>(),
+            Self::Cell(cell) => shape(&cell.shape),
+            Self::Struct(records) => {
+                shape(&records.shape) + records.fields.iter().map(|(name, _)| 48 + text(name)).sum::<usize>()
+            }
+            Self::Object(object) => shape(&object.records.shape) + text(&object.class),
+            Self::Opaque { class, why } => text(class) + text(why),
+        };
+        (size_of::<Self>() + bytes) as u64
+    }
+
     /// What this is, in words fit for a message: "a 3 x 4 array of numbers".
     pub fn words(&self) -> String {
         let by = |shape: &[usize]| shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
@@ -144,6 +204,11 @@ impl Value {
 }
 
 impl StructArray {
+    /// One record.
+    pub fn one(fields: Vec<(String, Vec<Value>)>) -> Self {
+        Self { shape: vec![1, 1], fields }
+    }
+
     /// The values of a field, one for each record.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
         self.fields.iter().find(|(field, _)| field == name).map(|(_, values)| values.as_slice())
@@ -241,6 +306,61 @@ pub enum VariableFault {
 }
 
 impl VariableFault {
+    /// The file is of another kind.
+    pub(crate) fn format(expected: &'static str, found: impl Into<String>) -> Self {
+        Self::Format { expected, found: found.into() }
+    }
+
+    /// The file, of which these are the bytes, is of another kind.
+    pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
+        Self::format(expected, if bytes.is_empty() { "nothing" } else { "other bytes" })
+    }
+
+    /// The file ends in the middle of something.
+    pub(crate) fn cut_off(variable: &str, offset: usize) -> Self {
+        Self::CutOff { variable: variable.to_owned(), offset: offset as u64 }
+    }
+
+    /// The bytes contradict the format.
+    pub(crate) fn damaged(variable: &str, what: impl Into<String>, offset: u64) -> Self {
+        Self::Damaged { variable: variable.to_owned(), what: what.into(), offset }
+    }
+
+    /// A line of a text says what cannot be taken.
+    pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
+        Self::Line { variable: variable.to_owned(), line, what: what.into() }
+    }
+
+    /// The format allows it, this program does not read it.
+    pub(crate) fn unsupported(variable: &str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self::Unsupported { variable: variable.to_owned(), what: what.into(), remedy: remedy.into() }
+    }
+
+    /// Values lie in values, deeper than anything that is read.
+    pub(crate) fn too_deep(variable: &str) -> Self {
+        Self::TooDeep { variable: variable.to_owned() }
+    }
+
+    /// The same with the value that it concerns, unless it says so already.
+    #[must_use]
+    pub(crate) fn of(mut self, name: impl FnOnce() -> String) -> Self {
+        match &mut self {
+            Self::CutOff { variable, .. }
+            | Self::Damaged { variable, .. }
+            | Self::Unsupported { variable, .. }
+            | Self::TooLarge { variable, .. }
+            | Self::TooMuchWork { variable, .. }
+            | Self::Line { variable, .. }
+            | Self::TooDeep { variable } => {
+                if variable.is_empty() {
+                    *variable = name();
+                }
+            }
+            Self::Format { .. } | Self::Duplicate { .. } | Self::Stopped => {}
+        }
+        self
+    }
+
     /// Whether the budget ends the reading: nothing else of the file is to be tried.
     pub fn is_of_the_budget(&self) -> bool {
         matches!(self, Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped)

@@ -1,5 +1,5 @@
 //! A study's corrections for other tools: programs and tables that compute them outside of this one, corrected models, and all
-//! results as variables of MATLAB. Each is an [`Exporter`]; the command line, the window and the documentation go by [`EXPORTERS`].
+//! results as variables of MATLAB. Each is an [`ExportFormat`]; the command line, the window and the documentation go by [`EXPORTERS`].
 
 mod all_results;
 mod corrected_models;
@@ -8,12 +8,8 @@ mod matlab_struct;
 mod programs;
 mod scheduled;
 
-use std::fmt;
 use std::io::{self, Write};
-use std::iter::once;
-use std::ops::Deref;
 use std::path::Path;
-use std::sync::LazyLock;
 
 use gdcm_core::correction::Pade;
 use gdcm_core::dataset::ConditionId;
@@ -26,37 +22,9 @@ use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 use crate::variables::VariableFault;
 
-/// Every export, in the order of their list.
-pub static EXPORTERS: LazyLock<Vec<&dyn Exporter>> = LazyLock::new(|| {
-    let programs = programs::PROGRAMS.iter().map(|program| program as &dyn Exporter);
-    let tables: [&dyn Exporter; 2] = [&lookup_table::TableCsv, &lookup_table::TableMat];
-    let results: [&dyn Exporter; 3] = [&corrected_models::CorrectedModels, &all_results::Csv, &all_results::Json];
-    once(&all_results::Mat as &dyn Exporter).chain(programs).chain(tables).chain(results).collect()
-});
-
 /// Something that a study's corrections can be exported as.
-pub trait Exporter: Sync {
-    /// What it is called and what it needs.
-    fn about(&self) -> About;
-
-    /// Refuses a name of a file that does not fit: a question for before the work.
-    ///
-    /// # Errors
-    /// What is wrong with the name.
-    fn check_path(&self, _path: &Path) -> Result<(), ExportFault> {
-        Ok(())
-    }
-
-    /// The contents of the file.
-    ///
-    /// # Errors
-    /// Why there are none.
-    fn export<'e>(&'e self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault>;
-}
-
-/// What an export is called and what it needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct About {
+#[derive(Clone, Copy, Debug)]
+pub struct ExportFormat {
     /// Its name on the command line.
     pub name: &'static str,
     /// The end of a file's name.
@@ -65,47 +33,41 @@ pub struct About {
     pub words: &'static str,
     /// The options of the command line that it takes.
     pub options: &'static [&'static str],
+    /// Refuses a name of a file that does not fit: a question for before the work.
+    check_path: fn(&Path) -> Result<(), ExportFault>,
+    /// The contents of the file.
+    export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// One of [`EXPORTERS`], the first of them before any choice.
-#[derive(Clone, Copy)]
-pub struct ExportFormat(&'static dyn Exporter);
+/// Every export, in the order of their list; the first of them before any choice.
+pub static EXPORTERS: [ExportFormat; 9] = [
+    all_results::MAT,
+    programs::MATLAB,
+    programs::PYTHON,
+    programs::C,
+    lookup_table::CSV,
+    lookup_table::MAT,
+    corrected_models::STATE_SPACE,
+    all_results::CSV,
+    all_results::JSON,
+];
 
 impl ExportFormat {
-    /// Every format, in the order of their list.
-    pub fn all() -> impl Iterator<Item = Self> {
-        EXPORTERS.iter().copied().map(Self)
-    }
-
     /// The format of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::all().find(|format| format.about().name == name)
+        EXPORTERS.into_iter().find(|format| format.name == name)
     }
 }
 
 impl Default for ExportFormat {
     fn default() -> Self {
-        Self(EXPORTERS[0])
-    }
-}
-
-impl Deref for ExportFormat {
-    type Target = dyn Exporter;
-
-    fn deref(&self) -> &Self::Target {
-        self.0
+        EXPORTERS[0]
     }
 }
 
 impl PartialEq for ExportFormat {
     fn eq(&self, other: &Self) -> bool {
-        self.about().name == other.about().name
-    }
-}
-
-impl fmt::Debug for ExportFormat {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.about().name)
+        self.name == other.name
     }
 }
 
@@ -147,7 +109,7 @@ pub struct ExportSource {
     pub sha256: String,
 }
 
-/// What an exporter is given.
+/// What an export is made of.
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
     /// What was found.
@@ -206,7 +168,7 @@ impl<'e> Exported<'e> {
 /// # Errors
 /// [`FileError::Export`] with what is wrong with it.
 pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> {
-    format.check_path(path).map_err(|fault| FileError::export(path, fault))
+    (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
 /// Writes what a request asks for, and gives what is to be known of it, line by line.
@@ -218,7 +180,7 @@ pub fn write_export(
     mut outputs: OutputSet,
 ) -> Result<Vec<String>, FileError> {
     check_export(request.format, path)?;
-    let exported = request.format.export(&Export { analysis, source, request, path });
+    let exported = (request.format.export)(&Export { analysis, source, request, path });
     let Exported { write, remarks } = exported.map_err(|fault| FileError::export(path, fault))?;
     outputs.add(path, write)?;
     outputs.persist()?;

@@ -11,18 +11,12 @@ use minijinja::{Environment, Value, context};
 
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
-use super::{About, Export, ExportFault, Exported, Exporter};
+use super::{Export, ExportFault, ExportFormat, Exported};
 use crate::figure::all_channels;
 
-/// A file in a programming language.
-pub(super) struct Program {
-    about: About,
-    template: &'static str,
-    language: Language,
-}
-
-/// How a language writes the value of a curve.
+/// A programming language: the template of a file, and how it writes the value of a curve.
 struct Language {
+    template: &'static str,
     exp: &'static str,
     min: &'static str,
     max: &'static str,
@@ -34,16 +28,18 @@ struct Language {
     declares_arrays: bool,
     /// A text between quotes, where the file holds the names of channels.
     text: fn(&str) -> String,
-    /// Whether a function is called by the name of its file.
-    is_called_by_its_file: bool,
 }
 
-/// The programs, in the order of their list.
-pub(super) static PROGRAMS: [Program; 3] = [
-    Program {
-        about: About { name: "m", extension: "m", words: "MATLAB function of airspeed", options: &[] },
-        template: include_str!("templates/matlab_function.m.jinja"),
-        language: Language {
+/// A function of MATLAB, which is called by the name of its file.
+pub(super) const MATLAB: ExportFormat = ExportFormat {
+    name: "m",
+    extension: "m",
+    words: "MATLAB function of airspeed",
+    options: &[],
+    check_path: |path| check_function_name(&stem(path)),
+    export: |of| {
+        let language = Language {
+            template: include_str!("templates/matlab_function.m.jinja"),
             exp: "exp",
             min: "min",
             max: "max",
@@ -51,13 +47,21 @@ pub(super) static PROGRAMS: [Program; 3] = [
             table: "gdcm_table",
             declares_arrays: false,
             text: comment,
-            is_called_by_its_file: true,
-        },
+        };
+        language.export(of)
     },
-    Program {
-        about: About { name: "py", extension: "py", words: "Python module, a function of airspeed", options: &[] },
-        template: include_str!("templates/python_module.py.jinja"),
-        language: Language {
+};
+
+/// A module of Python.
+pub(super) const PYTHON: ExportFormat = ExportFormat {
+    name: "py",
+    extension: "py",
+    words: "Python module, a function of airspeed",
+    options: &[],
+    check_path: |_| Ok(()),
+    export: |of| {
+        let language = Language {
+            template: include_str!("templates/python_module.py.jinja"),
             exp: "math.exp",
             min: "min",
             max: "max",
@@ -65,13 +69,21 @@ pub(super) static PROGRAMS: [Program; 3] = [
             table: "_table",
             declares_arrays: false,
             text: python_text,
-            is_called_by_its_file: false,
-        },
+        };
+        language.export(of)
     },
-    Program {
-        about: About { name: "h", extension: "h", words: "C header, a function of airspeed", options: &[] },
-        template: include_str!("templates/c_header.h.jinja"),
-        language: Language {
+};
+
+/// A header of C.
+pub(super) const C: ExportFormat = ExportFormat {
+    name: "h",
+    extension: "h",
+    words: "C header, a function of airspeed",
+    options: &[],
+    check_path: |_| Ok(()),
+    export: |of| {
+        let language = Language {
+            template: include_str!("templates/c_header.h.jinja"),
             exp: "exp",
             min: "fmin",
             max: "fmax",
@@ -79,32 +91,22 @@ pub(super) static PROGRAMS: [Program; 3] = [
             table: "GDCM_TABLE",
             declares_arrays: true,
             text: c_text,
-            is_called_by_its_file: false,
-        },
+        };
+        language.export(of)
     },
-];
+};
 
-impl Exporter for Program {
-    fn about(&self) -> About {
-        self.about
-    }
-
-    fn check_path(&self, path: &Path) -> Result<(), ExportFault> {
-        if self.language.is_called_by_its_file { check_function_name(&stem(path)) } else { Ok(()) }
-    }
-
-    fn export<'e>(&'e self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+impl Language {
+    fn export<'e>(self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let scheduled = of.scheduled()?;
         scheduled.check()?;
-        let name = stem(of.path);
+        let (name, remarks) = (stem(of.path), scheduled.notes_of_curves());
         let write = move |file: &mut dyn io::Write| file.write_all(self.text(&scheduled, &name)?.as_bytes());
-        Ok(Exported::new(write).with(scheduled.notes_of_curves()))
+        Ok(Exported::new(write).with(remarks))
     }
-}
 
-impl Program {
     /// The text of the file; `name` is that of the file without its ending.
-    pub(super) fn text(&self, of: &Scheduled<'_>, name: &str) -> io::Result<String> {
+    fn text(&self, of: &Scheduled<'_>, name: &str) -> io::Result<String> {
         let airspeeds = &of.schedule.airspeeds;
         let second = of.schedule.second.as_ref().map(|term| {
             let name = format!("{}_{}", term.variable.name(), term.variable.unit());
@@ -152,7 +154,7 @@ impl Program {
     fn couplings(&self, of: &CouplingMatrices) -> Value {
         let airspeeds = of.airspeeds();
         let (inputs, outputs) = of.feedback().shape();
-        let curve = |to, from| self.language.expression(&Curve::plain(of.mixing_curve(to, from).clone()));
+        let curve = |to, from| self.expression(&Curve::plain(of.mixing_curve(to, from).clone()));
         let mixing = |to: usize| {
             let entry = |from: usize| {
                 context! { column => from, own => curve(to, from), of => curve(from, from), is_unit => to == from }
@@ -182,11 +184,11 @@ impl Program {
             context! {
                 index,
                 number => index + 1,
-                text => (self.language.text)(&name),
+                text => (self.text)(&name),
                 comment => comment(&name),
-                gain => self.language.expression(&of.gain(channel)),
-                delay => self.language.expression(&of.delay_s(channel)),
-                zero => of.zero_s(channel).map(|zero_s| self.language.expression(&zero_s)),
+                gain => self.expression(&of.gain(channel)),
+                delay => self.expression(&of.delay_s(channel)),
+                zero => of.zero_s(channel).map(|zero_s| self.expression(&zero_s)),
             }
         };
         let lower = capital.to_lowercase();
@@ -199,9 +201,7 @@ impl Program {
             channels => channels.iter().enumerate().map(entry).collect::<Vec<_>>(),
         }
     }
-}
 
-impl Language {
     /// The value of a curve at the airspeed `a`, the scaled airspeed `v` and the scaled second variable `z`, with the arrays `c0`, `c1`
     /// and so on that it takes.
     fn expression(&self, curve: &Curve) -> Value {
@@ -241,49 +241,16 @@ fn stem(path: &Path) -> String {
 }
 
 /// What MATLAB (`iskeyword`) and GNU Octave keep for themselves, and the functions in the file.
-const KEYWORDS: [&str; 34] = [
-    "break",
-    "case",
-    "catch",
-    "classdef",
-    "continue",
-    "do",
-    "else",
-    "elseif",
-    "end",
-    "end_try_catch",
-    "end_unwind_protect",
-    "endfor",
-    "endfunction",
-    "endif",
-    "endparfor",
-    "endswitch",
-    "endwhile",
-    "for",
-    "function",
-    "global",
-    "if",
-    "otherwise",
-    "parfor",
-    "persistent",
-    "return",
-    "spmd",
-    "switch",
-    "try",
-    "until",
-    "unwind_protect",
-    "unwind_protect_cleanup",
-    "while",
-    "gdcm_polynomial",
-    "gdcm_table",
-];
+const KEYWORDS: &str = "break case catch classdef continue do else elseif end end_try_catch end_unwind_protect endfor \
+    endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
+    until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
 
 /// Refuses a name that no function of a file of MATLAB can have.
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME
         && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
-    if is_name && !KEYWORDS.contains(&name) {
+    if is_name && !KEYWORDS.split(' ').any(|word| word == name) {
         return Ok(());
     }
     Err(ExportFault::FunctionName { found: name.to_owned() })
@@ -396,10 +363,12 @@ mod tests {
     /// The schedule of an analysis as a program in a language; `name` is that of its file.
     fn program(language: &str, analysis: &Analysis, name: &str) -> String {
         let source = &ExportSource { name: NASTY[0].to_owned(), sha256: "ba78".to_owned() };
-        let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
-        let program = PROGRAMS.iter().find(|program| program.about().name == language).unwrap();
-        let couplings = analysis.fitted_couplings().map(|fitted| fitted.matrices());
-        program.text(&Scheduled { schedule, dataset, source, couplings }, name).unwrap()
+        let path = format!("{}.{language}", if name.is_empty() { "c" } else { name });
+        let export = Export { analysis, source, request: &ExportRequest::default(), path: Path::new(&path) };
+        let exported = (ExportFormat::named(language).unwrap().export)(&export).unwrap();
+        let mut text = Vec::new();
+        (exported.write)(&mut text).unwrap();
+        String::from_utf8(text).unwrap()
     }
 
     /// Names that would end a comment or a text if they were written as they are.
@@ -476,14 +445,13 @@ mod tests {
             }
             let source = ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() };
             for exporter in EXPORTERS.iter() {
-                let about = exporter.about();
-                let path = Path::new("k").with_extension(about.extension);
+                let path = Path::new("k").with_extension(exporter.extension);
                 let request = ExportRequest::default();
                 let export = Export { analysis: &analysis, source: &source, request: &request, path: &path };
-                let Ok(exported) = exporter.export(&export) else { continue };
+                let Ok(exported) = (exporter.export)(&export) else { continue };
                 let says =
                     exported.remarks.iter().any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
-                assert_eq!(says, price.is_some(), "{words}, {}: {:?}", about.name, exported.remarks);
+                assert_eq!(says, price.is_some(), "{words}, {}: {:?}", exporter.name, exported.remarks);
             }
         }
     }
@@ -753,13 +721,12 @@ mod tests {
 
     #[test]
     fn a_name_that_matlab_cannot_call_is_refused() {
-        let matlab = PROGRAMS.iter().find(|program| program.about().name == "m").unwrap();
         for name in ["2nd", "my-study", "gdcm_table", "end", "parfor", "endfunction", "\u{e9}t\u{e9}", &"x".repeat(64)]
         {
-            let refused = matlab.check_path(Path::new(&format!("folder/{name}.m")));
+            let refused = (MATLAB.check_path)(Path::new(&format!("folder/{name}.m")));
             assert_eq!(refused, Err(ExportFault::FunctionName { found: name.to_owned() }));
         }
-        assert_eq!(matlab.check_path(Path::new("k2_v.m")), Ok(()));
+        assert_eq!((MATLAB.check_path)(Path::new("k2_v.m")), Ok(()));
     }
 
     #[test]

@@ -11,7 +11,6 @@
 //! whole frame: a gap.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use gdcm_core::records::RecordColumn;
 
@@ -28,25 +27,14 @@ const LONGEST_STEP: i64 = 10_000_000;
 const FEWEST: usize = 50;
 
 /// Logs of Betaflight.
-pub(crate) struct Blackbox;
-
-impl Importer for Blackbox {
-    fn name(&self) -> &'static str {
-        "a blackbox log"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["bbl", "bfl"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(MARK)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const BLACKBOX: Importer = Importer {
+    name: "a blackbox log",
+    endings: &["bbl", "bfl"],
+    recognises: |bytes, _| bytes.starts_with(MARK),
+    read: |bytes, path, budget| {
         read_blackbox(bytes, budget).map(Contents::Logs).map_err(|fault| FileError::variables(path, fault))
-    }
-}
+    },
+};
 
 fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     let mut begins: Vec<usize> = Vec::new();
@@ -71,8 +59,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
         }
     }
     if flights.is_empty() {
-        let what = "a blackbox without a flight of 50 frames".to_owned();
-        return Err(VariableFault::Damaged { variable: String::new(), what, offset: 0 });
+        return Err(VariableFault::damaged("", "a blackbox without a flight of 50 frames", 0));
     }
     if without > 0 {
         flights[0].notes.push(format!("{without} of {count} flights in the file have hardly any frames: left out"));
@@ -170,8 +157,7 @@ impl Flight {
                 "a blackbox of data version \"{}\", or of fields of a later one",
                 &version.chars().take(9).collect::<String>()
             );
-            let remedy = "save it as CSV: blackbox_decode \"{file}\"".to_owned();
-            return Err(VariableFault::Unsupported { variable: name.to_owned(), what, remedy });
+            return Err(VariableFault::unsupported(name, what, "save it as CSV: blackbox_decode \"{file}\""));
         };
         let time = fields.names.iter().position(|field| field == "time");
         let count = fields.names.len();

@@ -10,14 +10,14 @@
 //! Stamps count microseconds since the autopilot was started. The data of a log that a crash cut end where they end.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use gdcm_core::records::ModeSpan;
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::logs::{PX4, Scalar, TopicSamples, array, give_meanings, mode_spans, modes_note};
+use crate::logs::{PX4, TopicSamples, array, give_meanings, mode_spans, modes_note};
 use crate::record_files::Columns;
+use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
@@ -26,26 +26,15 @@ const HEADER: usize = 16;
 const APPENDED: u8 = 1;
 
 /// Logs of PX4.
-pub(crate) struct ULog;
-
-impl Importer for ULog {
-    fn name(&self) -> &'static str {
-        "a ULog of PX4"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["ulg", "ulog"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(MAGIC)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const ULOG: Importer = Importer {
+    name: "a ULog of PX4",
+    endings: &["ulg", "ulog"],
+    recognises: |bytes, _| bytes.starts_with(MAGIC),
+    read: |bytes, path, budget| {
         let columns = read_ulog(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
-    }
-}
+    },
+};
 
 /// A topic of a number, and where its data stand in a message.
 struct Subscription {
@@ -67,7 +56,7 @@ struct Messages<'b> {
 
 fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     if bytes.len() < HEADER {
-        return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
+        return Err(VariableFault::cut_off("", bytes.len()));
     }
     let mut messages = Messages::default();
     let (mut at, mut appended, mut is_cut) = (HEADER, Vec::new(), false);
@@ -99,9 +88,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
 fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
     if unknown.into_iter().any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0) {
-        let what = "a ULog with parts of a later version".to_owned();
-        let remedy = "save its topics as CSV: ulog2csv \"{file}\"".to_owned();
-        return Err(VariableFault::Unsupported { variable: String::new(), what, remedy });
+        let remedy = "save its topics as CSV: ulog2csv \"{file}\"";
+        return Err(VariableFault::unsupported("", "a ULog with parts of a later version", remedy));
     }
     let offsets = (0..3).filter_map(|index| array(flags, 16 + 8 * index).map(u64::from_le_bytes));
     Ok(offsets.filter(|offset| *offset > 0).filter_map(|offset| usize::try_from(offset).ok()).collect())
@@ -125,12 +113,12 @@ impl<'b> Messages<'b> {
                     self.unread += 1;
                     return Ok(());
                 };
-                let time_us = topic.stamp.scalar.at(data, topic.stamp.offset);
+                let time_us = topic.stamp.number.at(data, topic.stamp.offset);
                 let Some(time_us) = time_us.filter(|_| data.len() >= topic.least) else {
                     self.unread += 1;
                     return Ok(());
                 };
-                let values = topic.places.iter().map(|place| place.scalar.at(data, place.offset).unwrap_or(f64::NAN));
+                let values = topic.places.iter().map(|place| place.number.at(data, place.offset).unwrap_or(f64::NAN));
                 topic.samples.push(time_us * 1e-6, values, budget)?;
             }
             b'O' => {
@@ -154,10 +142,10 @@ impl<'b> Messages<'b> {
             Err(_) => return Ok(()),
             Ok(places) => places,
         };
-        let is_stamp = |place: &Place| place.name == "timestamp" && place.scalar == Scalar::U64;
+        let is_stamp = |place: &Place| place.name == "timestamp" && Some(place.number) == number_of("uint64_t");
         let Some(stamp) = places.iter().find(|place| is_stamp(place)).cloned() else { return Ok(()) };
         let places: Vec<Place> = places.into_iter().filter(|place| !is_stamp(place)).collect();
-        let least = places.iter().chain([&stamp]).map(|place| place.offset + place.scalar.size()).max().unwrap_or(0);
+        let least = places.iter().chain([&stamp]).map(|place| place.offset + place.number.size()).max().unwrap_or(0);
         let name = if instance == 0 { name.to_owned() } else { format!("{name}[{instance}]") };
         let samples = TopicSamples::new(name, places.iter().map(|place| (place.name.clone(), None)));
         self.subscriptions.entry(number).or_insert(Subscription { samples, stamp, places, least });
@@ -169,7 +157,7 @@ impl<'b> Messages<'b> {
         let modes = modes_of(&topics);
         let mut columns = Columns::new(String::new(), topics.into_iter().flat_map(TopicSamples::columns).collect());
         if columns.columns.is_empty() {
-            return Err(VariableFault::CutOff { variable: String::new(), offset: HEADER as u64 });
+            return Err(VariableFault::cut_off("", HEADER));
         }
         columns.notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
         columns.notes.extend(give_meanings(&mut columns.columns, &PX4));
@@ -233,7 +221,7 @@ const DEEPEST: usize = 8;
 pub(super) struct Place {
     /// Its name: `xyz[0]`, `esc[1].esc_rpm`.
     pub(super) name: String,
-    pub(super) scalar: Scalar,
+    pub(super) number: StoredNumber,
     pub(super) offset: usize,
 }
 
@@ -263,13 +251,13 @@ struct Flat<'a> {
 
 impl Flat<'_> {
     fn damaged(&self, what: String) -> VariableFault {
-        VariableFault::Damaged { variable: self.message.to_owned(), what, offset: 0 }
+        VariableFault::damaged(self.message, what, 0)
     }
 
     /// Adds the numbers of a layout from a place on; gives where it ends.
     fn add(&mut self, name: &str, prefix: &str, mut offset: usize, deeper: usize) -> Result<usize, VariableFault> {
         if deeper == 0 {
-            return Err(VariableFault::TooDeep { variable: self.message.to_owned() });
+            return Err(VariableFault::too_deep(self.message));
         }
         let Some(fields) = self.formats.get(name) else {
             return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
@@ -288,15 +276,15 @@ impl Flat<'_> {
                 let label = if is_array { format!("{prefix}{field}[{index}]") } else { format!("{prefix}{field}") };
                 let begin = offset;
                 self.budget.work(1, self.message)?;
-                offset = match scalar(kind) {
-                    Some(Kind::Number(scalar)) => {
+                offset = match number_of(kind) {
+                    Some(number) => {
                         if !field.starts_with("_padding") {
                             self.budget.take(1, (size_of::<Place>() + label.len()) as u64, self.message)?;
-                            self.places.push(Place { name: label, scalar, offset });
+                            self.places.push(Place { name: label, number, offset });
                         }
-                        offset + scalar.size()
+                        offset + number.size()
                     }
-                    Some(Kind::Letter) => offset + 1,
+                    None if kind == "char" => offset + 1,
                     None => self.add(kind, &format!("{label}."), offset, deeper - 1)?,
                 };
                 // What has no bytes could stand there any number of times.
@@ -309,27 +297,23 @@ impl Flat<'_> {
     }
 }
 
-enum Kind {
-    Number(Scalar),
-    Letter,
-}
-
-/// What a name of a type of C means.
-fn scalar(kind: &str) -> Option<Kind> {
-    Some(Kind::Number(match kind {
-        "int8_t" => Scalar::I8,
-        "uint8_t" | "bool" => Scalar::U8,
-        "int16_t" => Scalar::I16,
-        "uint16_t" => Scalar::U16,
-        "int32_t" => Scalar::I32,
-        "uint32_t" => Scalar::U32,
-        "int64_t" => Scalar::I64,
-        "uint64_t" => Scalar::U64,
-        "float" => Scalar::F32,
-        "double" => Scalar::F64,
-        "char" => return Some(Kind::Letter),
+/// The number that a name of a type of C means; none where it means none.
+fn number_of(kind: &str) -> Option<StoredNumber> {
+    use NumberClass::{Float, Signed, Unsigned};
+    let (class, size) = match kind {
+        "int8_t" => (Signed, 1),
+        "uint8_t" | "bool" => (Unsigned, 1),
+        "int16_t" => (Signed, 2),
+        "uint16_t" => (Unsigned, 2),
+        "int32_t" => (Signed, 4),
+        "uint32_t" => (Unsigned, 4),
+        "int64_t" => (Signed, 8),
+        "uint64_t" => (Unsigned, 8),
+        "float" => (Float, 4),
+        "double" => (Float, 8),
         _ => return None,
-    }))
+    };
+    Some(StoredNumber::little_endian(class, size))
 }
 
 /// As much of a name as a message can bear.

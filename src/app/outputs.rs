@@ -30,7 +30,7 @@ impl GdcmApp {
     /// Shows the form that exports for other tools; a name is proposed where none was typed.
     pub(super) fn ask_export_as(&mut self) {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-        let extension = self.state.forms.export_format.about().extension;
+        let extension = self.state.forms.export_format.extension;
         let path = self.state.forms.typed_in(FormKind::ExportAs);
         if path.is_empty() {
             let stem = stem.unwrap_or_else(|| "example".to_owned());

@@ -66,8 +66,7 @@ impl FromStr for Breakpoints {
 }
 
 fn formats() -> impl TypedValueParser<Value = ExportFormat> {
-    let values =
-        EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.about().name).help(exporter.about().words));
+    let values = EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
     PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
 }
 
@@ -88,7 +87,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
     let remarks: String = remarks.iter().map(|remark| format!("{}\n", sanitized(remark))).collect();
-    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.about().words))
+    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.words))
 }
 
 /// What an export is called: the file of the study or of the dataset.
@@ -107,9 +106,9 @@ fn request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, 
         ("--correction", arguments.correction.is_some()),
         ("--pade", arguments.pade.is_some()),
     ];
-    let misplaced = |(option, is_given): &(&str, bool)| *is_given && !format.about().options.contains(option);
+    let misplaced = |(option, is_given): &(&str, bool)| *is_given && !format.options.contains(option);
     if let Some((option, _)) = given.into_iter().find(misplaced) {
-        let takes = EXPORTERS.iter().map(|exporter| exporter.about()).filter(|about| about.options.contains(&option));
+        let takes = EXPORTERS.iter().filter(|about| about.options.contains(&option));
         let names: Vec<&str> = takes.map(|about| about.name).collect();
         return Err(Failure::Option { option, reason: format!("is an option of --as {}", names.join(" and ")) });
     }

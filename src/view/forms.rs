@@ -8,7 +8,7 @@ use egui::{Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, Scr
 
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::study::{Difference, Edit};
-use gdcm_files::ExportFormat;
+use gdcm_files::EXPORTERS;
 use gdcm_files::figure::ColumnWidth;
 
 use super::records::{RecordsCommand, WantedDataset};
@@ -166,15 +166,13 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
             form.choices_ui(&mut forms.figure_width, ColumnWidth::BOTH.map(|width| (width, width.words())));
         }
         FormKind::ExportAs => {
-            form.choices_ui(&mut forms.export_format, ExportFormat::all().map(|of| (of, of.about().words)));
+            form.choices_ui(&mut forms.export_format, EXPORTERS.into_iter().map(|of| (of, of.words)));
         }
         _ => {}
     }
     // The end of the name goes with the format, as long as nobody has typed another.
-    if let Some(stem) =
-        path.strip_suffix(&format!(".{}", before.about().extension)).filter(|_| kind == FormKind::ExportAs)
-    {
-        path = format!("{stem}.{}", forms.export_format.about().extension);
+    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension)).filter(|_| kind == FormKind::ExportAs) {
+        path = format!("{stem}.{}", forms.export_format.extension);
     }
     let lost = forms.lost_dataset.as_ref().filter(|_| kind == FormKind::FindDataset);
     let explanation = lost.map_or(words.explanation, |(_, reason)| reason);

@@ -7,7 +7,7 @@ use std::process::Command;
 use gdcm_core::assembly::{FoundModel, Headings};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::response::evaluate;
-use gdcm_files::{About, EXPORTERS, FolderProgress, read_models};
+use gdcm_files::{EXPORTERS, ExportFormat, FolderProgress, read_models};
 use serde_json::{Value, json};
 
 use crate::commands::Desk;
@@ -38,7 +38,7 @@ fn state_space(model: &FoundModel) -> StateSpace {
 #[test]
 fn every_format_is_written_once_and_over_nothing_unasked() {
     let desk = Desk::new();
-    for About { name: format, extension, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+    for ExportFormat { name: format, extension, .. } in EXPORTERS {
         let name = format!("{}.{extension}", format.replace('-', "_"));
         let name = name.as_str();
         let arguments = ["export", "small.json", "--as", format, "--out", name];
@@ -57,7 +57,7 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
 #[test]
 fn every_export_stands_in_the_documentation() {
     let text = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/formats.md")).unwrap();
-    for About { name, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+    for ExportFormat { name, .. } in EXPORTERS {
         assert!(text.contains(&format!("\n| `{name}` |")), "{name}");
     }
 }
@@ -365,7 +365,7 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     let desk = Desk::new();
     // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
-    for About { name: format, extension, .. } in EXPORTERS.iter().map(|exporter| exporter.about()) {
+    for ExportFormat { name: format, extension, .. } in EXPORTERS {
         let name = if format == "state-space" {
             "state_space.json"
         } else {

@@ -6,7 +6,7 @@
 //!       -> models or records                                (recognise)
 //! ```
 //!
-//! A new format is a type with [`Importer`] in a file of its own, and an entry in [`FORMATS`].
+//! A new format is an [`Importer`] in a file of its own, and an entry in [`FORMATS`].
 
 use std::fs;
 use std::io::Read;
@@ -19,18 +19,17 @@ use gdcm_core::dataset::Dataset;
 use gdcm_core::message_text::sanitized;
 
 use crate::file_error::FileError;
-use crate::foreign_formats::ForeignFormat;
-use crate::json_values::Json;
-use crate::logs::{Blackbox, DataFlash, DataFlashText, ULog};
-use crate::mat::Mat;
-use crate::mat73::Hdf5;
-use crate::npy::Npy;
-use crate::octave::{OctaveBinary, OctaveText};
+use crate::json_values::JSON;
+use crate::logs::{BLACKBOX, DATAFLASH, DATAFLASH_TEXT, ULOG};
+use crate::mat::MAT;
+use crate::mat73::HDF5;
+use crate::npy::NPY;
+use crate::octave::{OCTAVE_BINARY, OCTAVE_TEXT};
 use crate::record_files::Columns;
 use crate::source::{kind_of, read_bytes, sha256};
-use crate::text::{Literals, Text};
+use crate::text::{LITERALS, TEXT};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
-use crate::zip_files::Zip;
+use crate::zip_files::ZIP;
 
 /// Memory that what one file holds may take \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
@@ -41,36 +40,33 @@ pub(crate) const MOST_FILES: usize = 20_000;
 pub(crate) const DEEPEST: usize = 16;
 
 /// A format of files of numbers.
-pub(crate) trait Importer: Sync {
+pub(crate) struct Importer {
     /// What it is called.
-    fn name(&self) -> &'static str;
-
+    pub(crate) name: &'static str,
     /// What the names of its files end with, in lower case.
-    fn endings(&self) -> &'static [&'static str];
-
+    pub(crate) endings: &'static [&'static str],
     /// Whether the bytes of a file whose name ends so are of it.
-    fn recognises(&self, bytes: &[u8], ending: &str) -> bool;
-
-    /// What the bytes hold; memory is taken from the budget before it is used. `path` is what errors call the file.
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError>;
+    pub(crate) recognises: fn(&[u8], &str) -> bool,
+    /// What the bytes hold; memory is taken from the budget before it is used. The path is what errors call the file.
+    pub(crate) read: fn(&[u8], &Path, &ReadingBudget<'_>) -> Result<Contents, FileError>,
 }
 
 /// The formats; a file is of the first that recognises it, and the last recognises any.
-const FORMATS: [&dyn Importer; 14] = [
-    &Npy,
-    &Zip,
-    &Hdf5,
-    &OctaveBinary,
-    &ULog,
-    &DataFlash,
-    &Blackbox,
-    &ForeignFormat,
-    &Mat,
-    &OctaveText,
-    &DataFlashText,
-    &Json,
-    &Literals,
-    &Text,
+static FORMATS: [Importer; 14] = [
+    NPY,
+    ZIP,
+    HDF5,
+    OCTAVE_BINARY,
+    ULOG,
+    DATAFLASH,
+    BLACKBOX,
+    FOREIGN_FORMAT,
+    MAT,
+    OCTAVE_TEXT,
+    DATAFLASH_TEXT,
+    JSON,
+    LITERALS,
+    TEXT,
 ];
 
 /// What a file holds.
@@ -118,9 +114,9 @@ impl Contents {
 }
 
 /// The format of bytes of a file of this name.
-pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static dyn Importer {
+pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
     let ending = ending_of(path);
-    FORMATS.into_iter().find(|format| format.recognises(bytes, &ending)).unwrap_or(&Text)
+    FORMATS.iter().find(|format| (format.recognises)(bytes, &ending)).unwrap_or(&TEXT)
 }
 
 /// What is told while files are read, and whether to go on.
@@ -154,7 +150,7 @@ pub(crate) fn import_bytes<'f>(
     name: &'f str,
     budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
-    let contents = importer_of(bytes, path).read(bytes, path, budget)?;
+    let contents = (importer_of(bytes, path).read)(bytes, path, budget)?;
     Ok(ImportedFile { path, name, sha256: sha256(bytes, path, budget)?, contents })
 }
 
@@ -269,13 +265,13 @@ fn is_other_log(path: &Path) -> bool {
     }
     let mut first = Vec::with_capacity(FIRST);
     let read = fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
-    read.is_ok() && importer_of(&first, path).name() == Text.name()
+    read.is_ok() && importer_of(&first, path).name == TEXT.name
 }
 
 /// Whether the name of a file ends as those of some format do; studies are no sources of models or records.
 pub(crate) fn is_known(path: &Path) -> bool {
     let ending = ending_of(path);
-    FORMATS.iter().any(|format| format.endings().contains(&ending.as_str()))
+    FORMATS.iter().any(|format| format.endings.contains(&ending.as_str()))
         && !path.to_string_lossy().ends_with(".gdcm-study.json")
 }
 
@@ -303,32 +299,90 @@ fn natural(name: &str) -> Vec<(String, u64)> {
     parts
 }
 
+// Files of formats that are known by their first bytes and not read: what they are, and how to save their numbers otherwise.
+
+/// A format that is not read: what its files begin with, its name, and what to do.
+type Foreign = (&'static [&'static [u8]], &'static str, &'static str);
+
+const AS_TABLE: &str = "save it as text in columns (CSV)";
+const UNPACK: &str = "unpack it, or pack it as .zip or .gz";
+const FROM_FEATHER: &str = "save it as CSV: pandas.read_feather(\"{file}\").to_csv(\"{stem}.csv\")";
+const FROM_PARQUET: &str = "save it as CSV: pandas.read_parquet(\"{file}\").to_csv(\"{stem}.csv\")";
+const FROM_PICKLE: &str = "save its arrays: numpy.savez(\"{stem}.npz\", A=A, B=B, C=C, D=D)";
+const FROM_NETCDF: &str = "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 \"{file}\" \"{stem}.h5\"";
+
+const FOREIGN: [Foreign; 13] = [
+    (&[b"PAR1"], "a Parquet file", FROM_PARQUET),
+    (&[b"ARROW1"], "an Arrow or Feather file", FROM_FEATHER),
+    (&[b"FEA1"], "a Feather file", FROM_FEATHER),
+    (&[b"\x80\x02", b"\x80\x03", b"\x80\x04", b"\x80\x05"], "a pickle of Python", FROM_PICKLE),
+    (&[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"], "an Excel workbook or another document of Microsoft Office", AS_TABLE),
+    (&[b"SQLite format 3"], "a database of SQLite", AS_TABLE),
+    (&[b"CDF\x01", b"CDF\x02"], "a netCDF file", FROM_NETCDF),
+    (&[b"MDF     "], "an MDF file of measurements", "save it as CSV or MATLAB"),
+    (&[b"TDSm"], "a TDMS file of LabVIEW", "save it as CSV or MATLAB"),
+    (&[b"%PDF-"], "a PDF document", AS_TABLE),
+    (&[b"\x89PNG"], "a picture", "save its numbers, not what they look like"),
+    (&[b"7z\xbc\xaf\x27"], "an archive of 7-Zip", UNPACK),
+    (&[b"\xfd7zXZ"], "a file packed by xz", UNPACK),
+];
+
+/// What other formats look like.
+pub(crate) const FOREIGN_FORMAT: Importer = Importer {
+    name: "a file of a format that is not read",
+    endings: &["parquet", "feather", "pkl"],
+    recognises: |bytes, _| foreign(bytes).is_some(),
+    read: |bytes, path, _| {
+        let (what, remedy) = foreign(bytes).map_or(("a file", AS_TABLE), |(_, what, remedy)| (*what, *remedy));
+        Err(FileError::variables(path, VariableFault::unsupported("", what, remedy)))
+    },
+};
+
+fn foreign(bytes: &[u8]) -> Option<&'static Foreign> {
+    FOREIGN.iter().find(|(marks, ..)| marks.iter().any(|mark| bytes.starts_with(mark)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_file_is_what_it_begins_with_whatever_it_is_called() {
-        let of = |bytes: &[u8], name: &str| importer_of(bytes, Path::new(name)).name();
-        assert_eq!(of(b"\x93NUMPY\x01\x00", "a.mat"), Npy.name());
-        assert_eq!(of(b"PK\x03\x04", "a.txt"), Zip.name());
-        assert_eq!(of(b"\x89HDF\r\n\x1a\n", "a.mat"), Hdf5.name());
-        assert_eq!(of(b" {\"A\": 1}", "a.txt"), Json.name());
-        assert_eq!(of(b"A = [1 2];", "a.m"), Literals.name());
-        assert_eq!(of(b"1,2\n3,4\n", "a.csv"), Text.name());
+        let of = |bytes: &[u8], name: &str| importer_of(bytes, Path::new(name)).name;
+        assert_eq!(of(b"\x93NUMPY\x01\x00", "a.mat"), NPY.name);
+        assert_eq!(of(b"PK\x03\x04", "a.txt"), ZIP.name);
+        assert_eq!(of(b"\x89HDF\r\n\x1a\n", "a.mat"), HDF5.name);
+        assert_eq!(of(b" {\"A\": 1}", "a.txt"), JSON.name);
+        assert_eq!(of(b"A = [1 2];", "a.m"), LITERALS.name);
+        assert_eq!(of(b"1,2\n3,4\n", "a.csv"), TEXT.name);
         // The same text is read alike, whatever it is called.
-        assert_eq!(of(b"% a model\nA = [1 2\n 3 4];", "a.txt"), Literals.name());
-        assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), Text.name());
-        assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), Text.name());
-        assert_eq!(of(b"A = [\n1 2\n3 4\n];", "a.m"), Literals.name());
-        assert_eq!(of(b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n", "a.txt"), OctaveText.name());
+        assert_eq!(of(b"% a model\nA = [1 2\n 3 4];", "a.txt"), LITERALS.name);
+        assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), TEXT.name);
+        assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), TEXT.name);
+        assert_eq!(of(b"A = [\n1 2\n3 4\n];", "a.m"), LITERALS.name);
+        assert_eq!(of(b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n", "a.txt"), OCTAVE_TEXT.name);
         let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
-        assert_eq!(of(&header, "no extension"), Mat.name());
+        assert_eq!(of(&header, "no extension"), MAT.name);
     }
     #[test]
     fn names_are_sorted_as_people_count() {
         let mut names = ["c10", "c2", "C1b", "c1", "roll+5", "roll-5"];
         names.sort_by_key(|name| natural(name));
         assert_eq!(names, ["c1", "C1b", "c2", "c10", "roll+5", "roll-5"]);
+    }
+}
+
+#[cfg(test)]
+mod foreign_tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_another_format_is_named_with_the_way_to_save_it_otherwise() {
+        let read =
+            (FOREIGN_FORMAT.read)(b"PAR1\x15\x04", Path::new("logs/flight 7.parquet"), &ReadingBudget::new(1 << 20));
+        let words = read.err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(words.contains("a Parquet file cannot be read; save it as CSV"), "{words}");
+        assert!(words.ends_with("pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"), "{words}");
+        assert!(!(FOREIGN_FORMAT.recognises)(b"omega,re,im\n", "csv"));
     }
 }

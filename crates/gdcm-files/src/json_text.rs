@@ -85,6 +85,7 @@ impl Format {
         budget: &ReadingBudget<'_>,
     ) -> Result<(T, Vec<String>), FileError> {
         check_object(text, path)?;
+        self.check(text, path, budget)?;
         budget.take(text.len() as u64, TYPED, "").map_err(|fault| FileError::variables(path, fault))?;
         let mut unknown = UnknownKeys::default();
         let mut json = serde_json::Deserializer::from_slice(text);
@@ -92,34 +93,25 @@ impl Format {
         let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
         let value = serde_ignored::deserialize(tracked, |key| unknown.add(&key));
         let ended = value.and_then(|value| json.end().map(|()| value));
-        match ended {
-            Ok(value) => Ok((value, unknown.cautions(text))),
-            Err(error) => {
-                let steps = track.path().iter().filter_map(step_of).collect::<Vec<_>>();
-                let outline = Outline::of(text);
-                self.check(&outline, path)?;
-                Err(json_error(text, path, location_of(&steps, &outline), &error))
-            }
-        }
+        ended.map(|value| (value, unknown.cautions(text))).map_err(|error| {
+            let steps = track.path().iter().filter_map(step_of).collect::<Vec<_>>();
+            json_error(text, path, location_of(&steps, &Outline::of(text)), &error)
+        })
     }
 
     /// Refuses a file that says it is of another format or version.
-    fn check(self, outline: &Outline, path: &Path) -> Result<(), FileError> {
+    fn check(self, text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
+        let (format, version) = Outline::format_and_version(text, budget);
         let path = path.to_owned();
-        match (&outline.format, &outline.version) {
-            (Some(found), _) if *found != format!("\"{}\"", self.name) => {
-                Err(FileError::Format { path, expected: self.name, found: found.clone() })
+        match (format, version) {
+            (Some(found), _) if found != format!("\"{}\"", self.name) => {
+                Err(FileError::Format { path, expected: self.name, found })
             }
-            (Some(_), Some(found)) if *found != self.version.to_string() => {
-                Err(FileError::Version { path, format: self.name, newest: self.version, found: found.clone() })
+            (Some(_), Some(found)) if found.parse() != Ok(self.version as f64) => {
+                Err(FileError::Version { path, format: self.name, newest: self.version, found })
             }
             _ => Ok(()),
         }
-    }
-
-    /// Refuses a format or a version that was read, but is another.
-    pub(super) fn check_read(self, format: &str, version: u64, path: &Path) -> Result<(), FileError> {
-        self.check(&Outline::named(format, version), path)
     }
 }
 

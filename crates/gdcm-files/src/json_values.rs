@@ -3,7 +3,6 @@
 
 use std::cell::RefCell;
 use std::fmt;
-use std::path::Path;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
@@ -13,35 +12,27 @@ use crate::importer::{Contents, Importer, importer_of};
 use crate::location::Outline;
 use crate::models_file::found_models;
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
+use crate::strides::Places;
 use crate::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
 /// JSON, and whatever is packed by gzip.
-pub(crate) struct Json;
-
-impl Importer for Json {
-    fn name(&self) -> &'static str {
-        "JSON"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["json", "gz"]
-    }
-
-    fn recognises(&self, bytes: &[u8], ending: &str) -> bool {
+pub(crate) const JSON: Importer = Importer {
+    name: "JSON",
+    endings: &["json", "gz"],
+    recognises: |bytes, ending| {
         bytes.starts_with(&GZIP_MAGIC) || ending == "json" || bytes.trim_ascii_start().first() == Some(&b'{')
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+    },
+    read: |bytes, path, budget| {
         let wrong = |fault| FileError::variables(path, fault);
         let text = text_of(bytes, path, budget)?;
         let text = without_mark(&text);
         if bytes.starts_with(&GZIP_MAGIC) && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
             let packed = path.with_extension("");
             return match importer_of(text, &packed) {
-                importer if importer.name() == Self.name() => Contents::row_major(variables_of(text, budget), path),
-                importer => importer.read(text, path, budget),
+                importer if importer.name == JSON.name => Contents::row_major(variables_of(text, budget), path),
+                importer => (importer.read)(text, path, budget),
             };
         }
         let format = Outline::format_of(text, budget);
@@ -61,8 +52,8 @@ impl Importer for Json {
             _ => {}
         }
         Contents::row_major(variables_of(text, budget), path)
-    }
-}
+    },
+};
 
 /// The members of a JSON object, or a list under the name "models".
 fn variables_of(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
@@ -70,11 +61,8 @@ fn variables_of(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>
     let mut json = serde_json::Deserializer::from_slice(text);
     let read = TreeReader { budget, refused: &refused }.deserialize(&mut json);
     let tree = read.and_then(|tree| json.end().map(|()| tree)).map_err(|error| {
-        refused.take().unwrap_or_else(|| VariableFault::Line {
-            variable: String::new(),
-            line: error.line(),
-            what: format!("this is not JSON: {error}"),
-        })
+        let wrong = || VariableFault::line("", error.line(), format!("this is not JSON: {error}"));
+        refused.take().unwrap_or_else(wrong)
     })?;
     match tree {
         Tree::Object(members) => {
@@ -187,18 +175,16 @@ const VALUE: u64 = size_of::<Value>() as u64 + 3 * ALLOCATION as u64;
 fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     budget.take(1, VALUE, "")?;
     Ok(match json {
-        Tree::Null => Value::Array(Array::matrix(0, 0, Vec::new())),
-        Tree::Bool(flag) => {
-            Value::Array(Array { kind: ElementKind::Logical, ..Array::matrix(1, 1, vec![f64::from(u8::from(flag))]) })
-        }
-        Tree::Number(number) => Value::Array(Array::matrix(1, 1, vec![number])),
-        Tree::Text(text) => Value::Text(TextArray { shape: vec![1, 1], texts: vec![text] }),
+        Tree::Null => Value::empty(),
+        Tree::Bool(flag) => Value::truth(flag),
+        Tree::Number(number) => Value::number(number),
+        Tree::Text(text) => Value::text(text),
         Tree::List(list) => list_of(list, budget)?,
         Tree::Object(members) => {
             budget.take(members.len() as u64, size_of::<(String, Vec<Value>)>() as u64, "")?;
             let field = |(name, value)| Ok((name, vec![value_of(value, budget)?]));
             let fields = members.into_iter().map(field).collect::<Result<_, _>>()?;
-            Value::Struct(StructArray { shape: vec![1, 1], fields })
+            Value::Struct(StructArray::one(fields))
         }
     })
 }
@@ -238,7 +224,7 @@ fn numbers_of(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>
         [count] => Array::matrix(1, *count, values),
         _ => {
             budget.take(values.len() as u64, 8, "")?;
-            let re = column_major(&values, &shape);
+            let re = Places::row_major(&shape).into_iter().flatten().map(|place| values[place]).collect();
             Array { shape, kind: ElementKind::Float, re, im: None }
         }
     }))
@@ -262,18 +248,6 @@ fn flatten(
         }
     }
     Ok(Some(()))
-}
-
-/// From the last index running fastest to the first one running fastest.
-fn column_major(values: &[f64], shape: &[usize]) -> Vec<f64> {
-    let (rows, columns, pages) = (shape[0], shape[1], shape.get(2).copied().unwrap_or(1));
-    let mut turned = Vec::with_capacity(values.len());
-    for page in 0..pages {
-        for column in 0..columns {
-            turned.extend((0..rows).map(|row| values[(row * columns + column) * pages + page]));
-        }
-    }
-    turned
 }
 
 #[cfg(test)]

@@ -1,15 +1,11 @@
 //! Files: datasets, studies and results. The only place that touches the file system.
 
 mod corrections_file;
-mod csv_table;
 mod dataset_file;
 mod exports;
 pub mod figure;
 mod figure_file;
 mod file_error;
-mod foreign_formats;
-
-mod identified_file;
 mod importer;
 mod json_text;
 mod json_values;
@@ -21,15 +17,10 @@ mod model_files;
 mod models_file;
 mod npy;
 mod octave;
-mod opened;
 mod output_set;
-
-mod reading_budget;
 mod recognise;
 mod record_files;
-mod recovery_file;
 mod report_file;
-mod requirement_tables;
 mod requirements_file;
 mod rules_file;
 mod source;
@@ -41,38 +32,37 @@ pub mod variables;
 mod zip_files;
 
 pub use corrections_file::*;
-pub use csv_table::{csv_text, save_tables};
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
     load_dataset_within, save_dataset, write_example,
 };
 pub use exports::{
-    About, EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, Exporter, check_export,
-    write_export,
+    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export,
 };
-pub use figure_file::{figure_format, write_as, write_figure};
+pub use figure_file::{csv_text, figure_format, save_tables, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
 
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
-pub use identified_file::{IdentifiedModels, add_identified};
 pub use importer::{FolderProgress, sources_folder};
 pub use json_text::write_pretty;
 pub use mat::write as write_mat;
 pub use model_files::{EVERY_TABLE, FoundModels, models_of_bytes, read_models};
-pub use models_file::add_models;
+pub use models_file::{IdentifiedModels, add_identified, add_models};
 pub use npy::write_npz;
-pub use opened::{Opened, holds_models, load_any};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
     relative_entry,
 };
-pub use recovery_file::{LostStudy, RecoveryFile, lost_studies};
 pub use report_file::{ReportSource, ReportSubject, assessment_sentence, report, save_report};
-pub use requirement_tables::{add_tolerances, load_tolerances, read_levels};
-pub use requirements_file::{REQUIREMENT_FILES, requirement_paths, write_requirements};
+pub use requirements_file::{
+    REQUIREMENT_FILES, add_tolerances, load_tolerances, read_levels, requirement_paths, write_requirements,
+};
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
-pub use study_file::{OpenedStudy, STUDY_EXTENSION, open_study, open_study_of, relative_folder, save_study};
+pub use study_file::{
+    Opened, OpenedStudy, STUDY_EXTENSION, holds_models, load_any, open_study, open_study_of, relative_folder,
+    save_study,
+};
 pub use text::UnsaidUnit;
-pub use user_state::{add_recent_file, is_first_start, recent_files};
+pub use user_state::{LostStudy, RecoveryFile, add_recent_file, is_first_start, lost_studies, recent_files};

@@ -97,14 +97,16 @@ impl Outline {
         Self::read(text, |outline| outline.ids.len() + outline.names.len() >= MOST_LABELS)
     }
 
-    /// The outline of a file whose format and version are known, and nothing else.
-    pub(super) fn named(format: &str, version: u64) -> Self {
-        Self { format: Some(quoted(format)), version: Some(version.to_string()), ..Self::default() }
-    }
-
     /// What the file calls its format; reads no further than that, nor on where the reader shall stop.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         Self::read(text, |outline| outline.format.is_some() || budget.work(0, "").is_err()).format
+    }
+
+    /// What the file calls its format and its version; reads no further than those.
+    pub(super) fn format_and_version(text: &[u8], budget: &ReadingBudget<'_>) -> (Option<String>, Option<String>) {
+        let is_read = |outline: &Self| outline.format.is_some() && outline.version.is_some();
+        let outline = Self::read(text, |outline| is_read(outline) || budget.work(0, "").is_err());
+        (outline.format, outline.version)
     }
 
     /// The id of a condition, by index.

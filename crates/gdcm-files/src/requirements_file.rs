@@ -4,19 +4,20 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
-
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::requirements::BandwidthRule;
+use gdcm_core::dataset::{ConditionId, Location};
+use gdcm_core::requirements::{BandwidthRule, LevelBoundaries, Tolerance, ToleranceError, ToleranceTable};
 use gdcm_core::study::{
     BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding, TimeHistories,
     ToleranceFinding,
 };
+use serde::{Deserialize, Serialize};
 
-use super::csv_table::write_records;
-use super::file_error::FileError;
-use super::json_text::write_pretty;
-use super::output_set::{OutputSet, make_directory};
+use crate::figure_file::write_records;
+use crate::file_error::{ContentError, ContentFault, FileError};
+use crate::json_text::{Format, json_error, write_pretty};
+use crate::output_set::{OutputSet, make_directory};
+use crate::source::Source;
+use crate::variables::ReadingBudget;
 
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
@@ -102,7 +103,7 @@ fn write_rows(requirements: &Requirements, time_histories: &TimeHistories, file:
 }
 
 /// What a number is of: the first ten cells of a row.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Subject<'a> {
     question: &'a str,
     condition: ConditionId,
@@ -148,9 +149,7 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
         model: &finding.model,
         output: &finding.output,
         input: &finding.input,
-        mode: "",
-        record: "",
-        tolerance: "",
+        ..Subject::default()
     };
     let row = |(name, value)| {
         let interval = finding.interval.get(name).copied();
@@ -196,11 +195,8 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
             airspeed_kt: finding.airspeed_kt,
             role,
             model: &numbers.model,
-            output: "",
-            input: "",
             mode: &mode,
-            record: "",
-            tolerance: "",
+            ..Subject::default()
         };
         let why = |name: &str| numbers.absent.get(name).copied().unwrap_or_default().to_owned();
         numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
@@ -217,11 +213,7 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
         airspeed_kt: finding.airspeed_kt,
         role: finding.role.name(),
         model: &finding.model,
-        output: "",
-        input: "",
-        mode: "",
-        record: "",
-        tolerance: "",
+        ..Subject::default()
     };
     let absent: &BTreeMap<&'static str, String> = &finding.absent;
     let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
@@ -236,11 +228,9 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         airspeed_kt: finding.airspeed_kt,
         role: finding.role.name(),
         model: &finding.model,
-        output: "",
         input: finding.moved_input.as_deref().unwrap_or_default(),
-        mode: "",
         record: &finding.record,
-        tolerance: "",
+        ..Subject::default()
     };
     let remark = match (finding.j_rms, finding.j_rms_left_out.as_slice()) {
         (None, _) => "no output is an angle, a rate, a speed or an acceleration".to_owned(),
@@ -267,5 +257,117 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
         ("correlation", None, _) => "flown or simulated does not move".to_owned(),
         ("correlation", _, Some(trend)) => format!("off-axis, trend {}", trend.name()),
         _ => String::new(),
+    }
+}
+
+// The engineer's own tables that requirements are asked with, each a file of its own, for any study (M17): levels of bandwidth and
+// phase delay, tolerances of time histories.
+
+const TOLERANCES: Format = Format { name: "gdcm-tolerances", version: 1 };
+
+#[derive(Serialize, Deserialize)]
+struct TolerancesText {
+    format: String,
+    version: u64,
+    #[serde(default)]
+    source: String,
+    tolerances: Vec<Tolerance>,
+}
+
+/// The boundaries of levels in a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s], ...]}]` (M17.1).
+///
+/// # Errors
+/// [`FileError`] with the line where the file cannot be read, or a boundary is none.
+pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
+    let source = Source::read(path, &ReadingBudget::default())?;
+    let text = source.text();
+    serde_json::from_slice(text).map_err(|error| json_error(text, path, Location::default(), &error))
+}
+
+/// Reads a table of tolerances; whole, or not at all. Keys that are not known are cautions.
+pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
+    let budget = ReadingBudget::default();
+    let source = Source::read(path, &budget)?;
+    let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
+    let refused = |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
+    let table = ToleranceTable::new(text.source, text.tolerances);
+    Ok((table.map_err(|error| FileError::content(path, refused(error)))?, cautions))
+}
+
+/// Writes a table of tolerances beside others of `outputs`.
+pub fn add_tolerances(table: &ToleranceTable, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+    let text = TolerancesText {
+        format: TOLERANCES.name.to_owned(),
+        version: TOLERANCES.version,
+        source: table.source().to_owned(),
+        tolerances: table.rows().to_vec(),
+    };
+    outputs.add(path, |file| write_pretty(&text, file))
+}
+
+#[cfg(test)]
+mod table_tests {
+    use super::*;
+    use crate::output_set::Existing;
+
+    #[test]
+    fn levels_are_read_and_what_is_wrong_with_them_is_said_with_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("levels.json");
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            read_levels(&path).map_err(|error| error.to_string())
+        };
+        let levels = read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
+        assert_eq!(levels.of_axis("P").next().unwrap().points, [[2.0, 0.0], [2.5, 0.2]]);
+        let cases = [
+            (r#"[{"name": "L", "axis": "P", "points": [[2, 0]]}]"#, "expected at least 2 points, found 1"),
+            (r#"[{"name": "L", "points": [[2, 0], [1, 1]]}]"#, "axis"),
+            (r#"{"levels": []}"#, "a list"),
+            ("[{", "end"),
+        ];
+        for (text, words) in cases {
+            let error = read(text).unwrap_err();
+            assert!(error.contains("levels.json") && error.contains(words), "{error}");
+        }
+    }
+
+    fn written(table: &ToleranceTable) -> (tempfile::TempDir, std::path::PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("tolerances.json");
+        let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+        add_tolerances(table, &path, &mut outputs).unwrap();
+        outputs.persist().unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn a_table_is_read_as_it_is_written() {
+        let table = ToleranceTable::default();
+        let (_folder, path) = written(&table);
+        assert_eq!(load_tolerances(&path).unwrap(), (table, Vec::new()));
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_table_is_said_with_its_row() {
+        let (_folder, path) = written(&ToleranceTable::default());
+        let right = std::fs::read_to_string(&path).unwrap();
+        for (from, to, words) in [
+            (
+                "\"absolute\": 3.0",
+                "\"absolute\": 0.0",
+                "tolerance 1, \"roll rate\": expected absolute above zero, found 0",
+            ),
+            ("\"channel\": \"P\"", "\"channel\": \"\"", "tolerance 1, \"roll rate\": expected the name of an output"),
+            ("\"absolute\": 3.0,", "", "\"absolute\" is missing"),
+            ("gdcm-tolerances", "gdcm-rules", "gdcm-tolerances"),
+        ] {
+            std::fs::write(&path, right.replacen(from, to, 1)).unwrap();
+            let error = load_tolerances(&path).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
+        std::fs::write(&path, right.replacen("\"source\"", "\"sauce\"", 1)).unwrap();
+        let (table, cautions) = load_tolerances(&path).unwrap();
+        assert!(table.source().is_empty() && cautions.len() == 1 && cautions[0].contains("sauce"), "{cautions:?}");
     }
 }

@@ -30,7 +30,6 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = FORMAT.decode::<RulesText>(source.text(), path, &budget)?;
-    FORMAT.check_read(&text.format, text.version, path)?;
     let rules = rules_of(text).map_err(|flaw| FileError::content(path, flaw))?;
     Ok((rules, cautions))
 }

@@ -1,6 +1,6 @@
 //! The order of an array's elements in a file.
 
-use crate::variables::ElementKind;
+use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
 /// Where the elements of an array stand in a file, in the order in which this program keeps them: the first index running fastest.
 pub(crate) struct Places {
@@ -70,6 +70,87 @@ impl Iterator for Places {
 
 impl ExactSizeIterator for Places {}
 
+/// Elements from the last index running fastest to the first one running fastest.
+pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
+    let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
+    let places = Places::row_major(shape).into_iter().flatten();
+    places.filter_map(|place| elements.get_mut(place)?.take()).collect()
+}
+
+/// A shape with at least two dimensions: numbers alone are 1 x 1, lists are rows.
+pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
+    match *shape {
+        [] => vec![1, 1],
+        [columns] => vec![1, columns],
+        _ => shape.to_vec(),
+    }
+}
+
+// Matrices of which only the numbers other than zero are stored, filled up.
+
+/// The numbers other than zero, each with its place.
+pub(crate) struct Entries {
+    /// Number of rows and columns.
+    pub(crate) shape: [usize; 2],
+    /// What the numbers are.
+    pub(crate) kind: ElementKind,
+    /// Row of each number, counted from 0.
+    pub(crate) rows: Vec<usize>,
+    /// Column of each number, counted from 0.
+    pub(crate) columns: Vec<usize>,
+    /// Real part of each number.
+    pub(crate) re: Vec<f64>,
+    /// Imaginary part of each number of complex ones.
+    pub(crate) im: Option<Vec<f64>>,
+}
+
+impl Entries {
+    /// Those of numbers that stand column by column, `starts` being where each column begins among them and where the last ends;
+    /// nothing where that does not fit them. Room for further numbers may have been left behind the last.
+    pub(crate) fn of_columns(
+        shape: [usize; 2],
+        kind: ElementKind,
+        mut rows: Vec<usize>,
+        starts: &[usize],
+        (re, im): (Vec<f64>, Option<Vec<f64>>),
+    ) -> Option<Self> {
+        let stored = *starts.last()?;
+        let short = stored > rows.len() || stored > re.len() || im.as_ref().is_some_and(|im| stored > im.len());
+        if starts.len() != shape[1].checked_add(1)? || starts[0] != 0 || !starts.is_sorted() || short {
+            return None;
+        }
+        rows.truncate(stored);
+        let runs = starts.windows(2).enumerate();
+        let columns = runs.flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0])).collect();
+        Some(Self { shape, kind, rows, columns, re, im })
+    }
+
+    /// The whole matrix; what two entries say of the same place is added.
+    ///
+    /// `outside` is the fault that a number lies outside the matrix.
+    pub(crate) fn filled(
+        &self,
+        variable: &str,
+        budget: &ReadingBudget<'_>,
+        outside: impl Fn() -> VariableFault,
+    ) -> Result<Array, VariableFault> {
+        let [height, width] = self.shape;
+        let count = (height as u64).saturating_mul(width as u64);
+        budget.take(count, if self.im.is_some() { 16 } else { 8 }, variable)?;
+        let fill = |values: &[f64]| {
+            let mut filled = vec![0.0; height.saturating_mul(width)];
+            for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
+                let inside = row < height && column < width;
+                let place = if inside { filled.get_mut(column * height + row) } else { None };
+                *place.ok_or_else(&outside)? += value;
+            }
+            Ok(filled)
+        };
+        let im = self.im.as_deref().map(fill).transpose()?;
+        Ok(Array { shape: self.shape.to_vec(), kind: self.kind, re: fill(&self.re)?, im })
+    }
+}
+
 // Numbers as binary files hold them.
 
 /// How the bits of a number are read.
@@ -101,6 +182,11 @@ impl StoredNumber {
             _ => &[1, 2, 4, 8],
         };
         sizes.contains(&size).then_some(Self { class, size, big_endian })
+    }
+
+    /// A number of one of these sizes, the lowest byte first.
+    pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
+        Self { class, size, big_endian: false }
     }
 
     /// Number of bytes.
@@ -136,10 +222,17 @@ impl StoredNumber {
         }
     }
 
+    /// The number that stands at a place; none where the bytes end before.
+    pub(crate) fn at(self, bytes: &[u8], offset: usize) -> Option<f64> {
+        Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
+    }
+
     fn bits(self, bytes: &[u8]) -> u64 {
         let mut eight = [0; 8];
-        for (place, &byte) in bytes.iter().take(self.size).enumerate() {
-            eight[if self.big_endian { self.size - 1 - place } else { place }] = byte;
+        let count = bytes.len().min(self.size);
+        eight[..count].copy_from_slice(&bytes[..count]);
+        if self.big_endian {
+            eight[..self.size].reverse();
         }
         u64::from_le_bytes(eight)
     }
@@ -214,5 +307,30 @@ mod stored_number_tests {
         assert_eq!(number(NumberClass::Float, 4, true).decode(&[0x3f, 0x80, 0, 0]), 1.0);
         assert_eq!(number(NumberClass::Signed, 8, false).decode(&[255; 8]), -1.0);
         assert_eq!(StoredNumber::new(NumberClass::Float, 16, false), None);
+    }
+}
+
+#[cfg(test)]
+mod sparse_tests {
+    use super::*;
+
+    fn entries(shape: [usize; 2]) -> Entries {
+        let (rows, columns) = (vec![0, 1], vec![1, 0]);
+        Entries { shape, kind: ElementKind::Float, rows, columns, re: vec![2.0, 3.0], im: Some(vec![0.0, 1.0]) }
+    }
+
+    #[test]
+    fn what_is_not_stored_is_zero() {
+        let budget = ReadingBudget::new(1000);
+        let array = entries([2, 2]).filled("", &budget, || VariableFault::Stopped).unwrap();
+        assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
+    }
+
+    #[test]
+    fn places_outside_and_sizes_beyond_the_limit_are_refused() {
+        let budget = ReadingBudget::new(1000);
+        assert_eq!(entries([1, 2]).filled("", &budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
+        let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
+        assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }
 }

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-use serde::{Deserialize, Serialize};
 
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use gdcm_core::dataset::{Condition, ConditionId, Dataset, Location};
@@ -14,10 +13,12 @@ use gdcm_core::study::{
     Settings, Study, TurnedChannel,
 };
 use gdcm_core::whole_number::whole;
+use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::{Format, list, write_pretty};
+use crate::location::Outline;
 use crate::output_set::{Existing, OutputSet};
 use crate::source::Source;
 use crate::variables::ReadingBudget;
@@ -283,7 +284,6 @@ pub(super) fn study_from(
     budget: &ReadingBudget<'_>,
 ) -> Result<OpenedStudy, FileError> {
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
-    FORMAT.check_read(&text.format, text.version, path)?;
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
     let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
         .map_err(|error| FileError::content(path, error))?;
@@ -358,5 +358,58 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
     match (absolute.parent(), absolute.file_name()) {
         (Some(directory), Some(name)) => Ok(fs::canonicalize(directory).map_err(failed)?.join(name)),
         _ => Err(FileError::unwritable(path, "this is not the name of a file")),
+    }
+}
+
+// Files of either kind that the program opens.
+
+/// What a file turned out to be.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "one is made when a file is opened, and taken apart at once")]
+pub enum Opened {
+    /// A dataset.
+    Dataset(LoadedDataset),
+    /// A study, with the dataset it is about.
+    Study(OpenedStudy),
+}
+
+impl Opened {
+    /// The study: the one opened, or that of the dataset before any decision; the dataset; and what is different in it.
+    pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
+        match self {
+            Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
+            Opened::Study(OpenedStudy { study, loaded, differences, .. }) => (study, loaded, differences),
+        }
+    }
+}
+
+/// Whether a path is a folder, or a file that by its name and its first sign only models can be taken from: neither a dataset nor a
+/// study.
+pub fn holds_models(path: &Path) -> bool {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let by_name = !matches!(extension.as_deref(), Some("json" | "gz"));
+    path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
+}
+
+/// Whether the first sign of a file opens an object of JSON.
+fn begins_an_object(path: &Path) -> bool {
+    let mut first = Vec::new();
+    let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
+    read.is_ok() && first.trim_ascii_start().starts_with(b"{")
+}
+
+/// Opens a dataset or a study, whichever the file says it is, within a budget.
+pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
+    let source = Source::read(path, budget)?;
+    match Outline::format_of(source.text(), budget).as_deref() {
+        Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None, budget)?)),
+        Some("\"gdcm-dataset\"") | None => {
+            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?))
+        }
+        Some(found) => Err(FileError::Format {
+            path: path.to_owned(),
+            expected: "gdcm-dataset\" or \"gdcm-study",
+            found: found.to_owned(),
+        }),
     }
 }

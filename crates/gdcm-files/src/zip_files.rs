@@ -22,25 +22,12 @@ const CHUNK: u64 = 1 << 20;
 const ARRAY: &str = ".npy";
 
 /// Zip archives: arrays of NumPy (`.npz`), and files of any other format.
-pub(crate) struct Zip;
-
-impl Importer for Zip {
-    fn name(&self) -> &'static str {
-        "a zip archive"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["npz", "zip"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        matches!(bytes, [b'P', b'K', 3 | 5, ..])
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
-        read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault))
-    }
-}
+pub(crate) const ZIP: Importer = Importer {
+    name: "a zip archive",
+    endings: &["npz", "zip"],
+    recognises: |bytes, _| matches!(bytes, [b'P', b'K', 3 | 5, ..]),
+    read: |bytes, path, budget| read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault)),
+};
 
 /// The arrays and the other files of an archive; archives in archives are not read.
 pub(crate) fn read_archive(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Contents, VariableFault> {
@@ -59,9 +46,9 @@ pub(crate) fn read_archive(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<C
         }
         let unpacked = if is_known(path) { Some(file.unpack(file.path, budget)?) } else { None };
         let importer = unpacked.as_deref().map(|bytes| (importer_of(bytes, path), bytes));
-        match importer.filter(|(importer, _)| importer.name() != Zip.name()) {
+        match importer.filter(|(importer, _)| importer.name != ZIP.name) {
             None => ignored.push(format!("{}: no file of a known kind", file.path)),
-            Some((importer, bytes)) => match importer.read(bytes, path, budget) {
+            Some((importer, bytes)) => match (importer.read)(bytes, path, budget) {
                 Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => return Err(fault),
                 contents => files.push((file.path.to_owned(), contents)),
             },
@@ -88,15 +75,17 @@ pub(super) fn visit_files(
 ) -> Result<(), VariableFault> {
     let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
     let mut entries = archive.entries();
-    while let Some(entry) =
-        entries.next_entry().map_err(|error| damaged("", &error.to_string(), archive.directory_offset()))?
+    while let Some(entry) = entries
+        .next_entry()
+        .map_err(|error| VariableFault::damaged("", error.to_string(), archive.directory_offset()))?
     {
         if entry.is_dir() {
             continue;
         }
         let path = entry.file_path();
         let offset = entry.local_header_offset();
-        let path = std::str::from_utf8(path.as_bytes()).map_err(|_| damaged("", "a name is not UTF-8", offset))?;
+        let path = std::str::from_utf8(path.as_bytes())
+            .map_err(|_| VariableFault::damaged("", "a name is not UTF-8", offset))?;
         visit(&ZipFile { path, offset, archive: &archive, entry: &entry })?;
     }
     Ok(())
@@ -105,18 +94,16 @@ pub(super) fn visit_files(
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
     pub(super) fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
-        let unsupported = |what: String| {
-            let remedy = "pack it again by deflate, without a password".to_owned();
-            VariableFault::Unsupported { variable: name.to_owned(), what, remedy }
-        };
+        let unsupported =
+            |what: &str| VariableFault::unsupported(name, what, "pack it again by deflate, without a password");
         if self.entry.flags().is_encrypted() {
-            return Err(unsupported("an encrypted entry".to_owned()));
+            return Err(unsupported("an encrypted entry"));
         }
         let found = self.archive.get_entry(self.entry.wayfinder());
-        let found = found.map_err(|error| damaged(name, &error.to_string(), self.offset))?;
+        let found = found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
         let (packed, length) = (found.data(), self.entry.uncompressed_size_hint());
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(damaged(name, "it claims more bytes than it can unpack to", self.offset));
+            return Err(VariableFault::damaged(name, "it claims more bytes than it can unpack to", self.offset));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
@@ -124,9 +111,9 @@ impl ZipFile<'_, '_> {
             CompressionMethod::DEFLATE => {
                 read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length, budget)?
             }
-            method => return Err(unsupported(format!("an entry packed by method {}", method.as_u16()))),
+            method => return Err(unsupported(&format!("an entry packed by method {}", method.as_u16()))),
         };
-        unpacked.map_err(|error| damaged(name, &error.to_string(), self.offset))
+        unpacked.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))
     }
 }
 
@@ -152,15 +139,9 @@ fn read_whole(
 /// Why there is no archive at all: a file begun as one has lost its end, where the directory stands.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
-        return VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 };
+        return VariableFault::cut_off("", bytes.len());
     }
-    let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
-    VariableFault::Format { expected: "a zip archive (.npz, .zip)", found: found.to_owned() }
-}
-
-/// A fault of what the archive, or a file in it, holds.
-pub(super) fn damaged(name: &str, what: &str, offset: u64) -> VariableFault {
-    VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset }
+    VariableFault::other_bytes("a zip archive (.npz, .zip)", bytes)
 }
 
 #[cfg(test)]

@@ -110,7 +110,6 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
-    FORMAT.check_read(&text.format, text.version, path)?;
     let (draft, _) = text.into_draft().map_err(|error| FileError::content_of(path, error, source.text()))?;
     let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
     Ok(draft.faults().into_iter().map(told).collect())
@@ -171,7 +170,6 @@ pub(super) fn dataset_from(
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.path();
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
-    FORMAT.check_read(&text.format, text.version, &path)?;
     let (draft, misplaced) = text.into_draft().map_err(|error| FileError::content_of(&path, error, source.text()))?;
     cautions.extend(misplaced);
     let (dataset, odd) =

@@ -7,52 +7,51 @@ use gdcm_core::study::Analysis;
 use serde_json::{Value as Tree, json};
 
 use super::matlab_struct::{Layout, cell_of_texts};
-use super::{About, Export, ExportFault, Exported, Exporter};
+use super::{Export, ExportFormat, Exported};
 use crate::corrections_file::{channel_table, corrections, write_corrections};
 use crate::mat;
 use crate::variables::{Value, Variable};
 
 /// `corrections.json`.
-pub(super) struct Json;
-/// `corrections.csv`.
-pub(super) struct Csv;
-/// The struct `corrections` of MATLAB.
-pub(super) struct Mat;
-
-impl Exporter for Json {
-    fn about(&self) -> About {
-        About { name: "json", extension: "json", words: "corrections.json alone", options: &[] }
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+pub(super) const JSON: ExportFormat = ExportFormat {
+    name: "json",
+    extension: "json",
+    words: "corrections.json alone",
+    options: &[],
+    check_path: |_| Ok(()),
+    export: |of| {
         let Export { analysis, source, .. } = *of;
         Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file))
             .with(of.price()))
-    }
-}
+    },
+};
 
-impl Exporter for Csv {
-    fn about(&self) -> About {
-        About { name: "csv", extension: "csv", words: "corrections.csv alone", options: &[] }
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+/// `corrections.csv`.
+pub(super) const CSV: ExportFormat = ExportFormat {
+    name: "csv",
+    extension: "csv",
+    words: "corrections.csv alone",
+    options: &[],
+    check_path: |_| Ok(()),
+    export: |of| {
         let analysis = of.analysis;
         Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)).with(of.price()))
-    }
-}
+    },
+};
 
-impl Exporter for Mat {
-    fn about(&self) -> About {
-        About { name: "mat", extension: "mat", words: "MATLAB data: all corrections as one struct", options: &[] }
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+/// The struct `corrections` of MATLAB.
+pub(super) const MAT: ExportFormat = ExportFormat {
+    name: "mat",
+    extension: "mat",
+    words: "MATLAB data: all corrections as one struct",
+    options: &[],
+    check_path: |_| Ok(()),
+    export: |of| {
         let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
         let value = corrections_struct(corrections, &of.analysis.study.dataset);
         Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?).with(of.price()))
-    }
-}
+    },
+};
 
 fn all(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()

@@ -13,27 +13,21 @@ use gdcm_core::dataset::{
 use gdcm_core::study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
 use gdcm_core::units::{number, telling};
 
-use super::matlab_struct::{Fields, cell_of_texts, matrix, records, scalar, text};
-use super::{About, Export, ExportFault, ExportRequest, Exported, ExportedRole, Exporter};
+use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
+use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
 use crate::mat;
 use crate::models_file::write_models;
 use crate::npy::write_npz;
 use crate::variables::{TextArray, Value, Variable};
 
 /// Corrected models, in the format that the end of the file's name says.
-pub(super) struct CorrectedModels;
-
-impl Exporter for CorrectedModels {
-    fn about(&self) -> About {
-        let options = &["--condition", "--model", "--correction", "--pade"];
-        About { name: "state-space", extension: "mat", words: "Corrected models as state-space", options }
-    }
-
-    fn check_path(&self, path: &Path) -> Result<(), ExportFault> {
-        ModelsFormat::of(path).map(drop)
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
+    name: "state-space",
+    extension: "mat",
+    words: "Corrected models as state-space",
+    options: &["--condition", "--model", "--correction", "--pade"],
+    check_path: |path| ModelsFormat::of(path).map(drop),
+    export: |of| {
         let models = exported_models(of.analysis, of.request)?;
         let dataset = &of.analysis.study.dataset;
         let remarks = models.iter().map(ExportedModel::words).collect();
@@ -47,8 +41,8 @@ impl Exporter for CorrectedModels {
             }
         };
         Ok(exported.with(remarks))
-    }
-}
+    },
+};
 
 /// What corrected models are written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -310,10 +304,10 @@ fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
         fields.add("OutputUnit", units(dataset.outputs()));
         fields.add("StateName", cell_of_texts(model.states.iter().cloned()));
         for (name, metric) in METRICS {
-            fields.add(name, scalar(metric(model)));
+            fields.add(name, Value::number(metric(model)));
         }
-        fields.add("model", text(&model.name));
-        fields.add("correction", text(model.correction));
+        fields.add("model", Value::text(&model.name));
+        fields.add("correction", Value::text(model.correction));
         fields
     };
     Variable { name: "models".to_owned(), value: records(models.iter().map(record).collect()) }

@@ -5,45 +5,39 @@ use std::iter::once;
 
 use gdcm_core::correction::Channel;
 
-use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row, scalar, text};
+use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row};
 use super::programs::comment;
 use super::scheduled::{Scheduled, number};
-use super::{About, Export, ExportFault, Exported, Exporter};
+use super::{ExportFault, ExportFormat, Exported};
 use crate::figure::all_channels;
 use crate::mat;
-use crate::variables::Variable;
+use crate::variables::{Value, Variable};
 
 /// The lookup table in text.
-pub(super) struct TableCsv;
-/// The lookup table for MATLAB.
-pub(super) struct TableMat;
-
-impl Exporter for TableCsv {
-    fn about(&self) -> About {
-        About { name: "table-csv", extension: "csv", words: "Lookup table over airspeed, CSV", options: OPTIONS }
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+pub(super) const CSV: ExportFormat = ExportFormat {
+    name: "table-csv",
+    extension: "csv",
+    words: "Lookup table over airspeed, CSV",
+    options: OPTIONS,
+    check_path: |_| Ok(()),
+    export: |of| {
         let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
         Ok(Exported::bytes(table.csv()).with(table.remarks()))
-    }
-}
+    },
+};
 
-impl Exporter for TableMat {
-    fn about(&self) -> About {
-        About {
-            name: "table-mat",
-            extension: "mat",
-            words: "Lookup table over airspeed, MATLAB data",
-            options: OPTIONS,
-        }
-    }
-
-    fn export<'e>(&self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
+/// The lookup table for MATLAB.
+pub(super) const MAT: ExportFormat = ExportFormat {
+    name: "table-mat",
+    extension: "mat",
+    words: "Lookup table over airspeed, MATLAB data",
+    options: OPTIONS,
+    check_path: |_| Ok(()),
+    export: |of| {
         let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
         Ok(Exported::bytes(mat::write(&[table.variable()])?).with(table.remarks()))
-    }
-}
+    },
+};
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
@@ -256,15 +250,15 @@ impl<'e> BreakpointTable<'e> {
             fields.add("feedback", matrix(feedback.nrows(), feedback.ncols(), feedback.as_slice().to_vec()));
         }
         if let Some(leads) = &schedule.leads {
-            fields.add("lead_order", scalar(leads.design.settings().order.number() as f64));
-            fields.add("lead_lag_s", scalar(leads.design.lag_s()));
+            fields.add("lead_order", Value::number(leads.design.settings().order.number() as f64));
+            fields.add("lead_lag_s", Value::number(leads.design.lag_s()));
         }
         if let Some(price) = schedule.lead_price() {
-            fields.add("not_valid_above_rad_s", scalar(price.limit_rad_s));
+            fields.add("not_valid_above_rad_s", Value::number(price.limit_rad_s));
             fields.add("input_gain_above_band_db", row(price.gains_db.inputs.iter().copied()));
             fields.add("output_gain_above_band_db", row(price.gains_db.outputs.iter().copied()));
         }
-        fields.add("interpolation", text("linear between the airspeeds, the end values outside"));
+        fields.add("interpolation", Value::text("linear between the airspeeds, the end values outside"));
         Variable { name: "gdcm_table".to_owned(), value: fields.record() }
     }
 }

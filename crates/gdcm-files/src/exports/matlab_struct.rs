@@ -2,7 +2,8 @@
 
 use serde_json::Value as Json;
 
-use crate::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value};
+use crate::strides::first_index_fastest;
+use crate::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
 /// Longest name that MATLAB takes (`namelengthmax`).
 pub(super) const LONGEST_NAME: usize = 63;
@@ -34,9 +35,9 @@ impl Layout {
     /// texts columns of cells; what is null is NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
-            Json::Null | Json::Number(_) => scalar(number(json)),
-            Json::Bool(flag) => truth(*flag),
-            Json::String(words) => text(words),
+            Json::Null | Json::Number(_) => Value::number(number(json)),
+            Json::Bool(flag) => Value::truth(*flag),
+            Json::String(words) => Value::text(words),
             Json::Array(entries) => self.list(name, entries),
             Json::Object(members) if self.by_channel.contains(&name) => {
                 self.gathered(&[members.len()], members.values().collect())
@@ -79,9 +80,7 @@ impl Layout {
     fn records(&self, objects: &[&Json]) -> Value {
         let of = |name: &str| {
             let values = objects.iter().map(|object| object.get(name));
-            values
-                .map(|value| value.map_or_else(|| matrix(0, 0, Vec::new()), |value| self.value(name, value)))
-                .collect()
+            values.map(|value| value.map_or_else(Value::empty, |value| self.value(name, value))).collect()
         };
         let fields = names_of(objects).into_iter().map(|name| (valid_name(name), of(name))).collect();
         Value::Struct(StructArray { shape: vec![1, objects.len()], fields })
@@ -128,7 +127,7 @@ impl Layout {
             return array(&[shape, &[length]].concat(), numbers.collect(), ElementKind::Float);
         }
         let values = leaves.iter().map(|leaf| match leaf {
-            Json::Null => matrix(0, 0, Vec::new()),
+            Json::Null => Value::empty(),
             leaf => self.value("", leaf),
         });
         let shape = sides(shape);
@@ -164,25 +163,6 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     Value::Array(Array { re: first_index_fastest(&shape, numbers), kind, im: None, shape })
 }
 
-/// Entries of an array from the last index running fastest to the first one running fastest.
-fn first_index_fastest<T>(shape: &[usize], entries: Vec<T>) -> Vec<T> {
-    let mut placed: Vec<(usize, T)> = entries
-        .into_iter()
-        .enumerate()
-        .map(|(place, entry)| {
-            let (mut rest, mut indices) = (place, Vec::with_capacity(shape.len()));
-            for side in shape.iter().rev() {
-                indices.push(rest % side);
-                rest /= side;
-            }
-            let place = indices.iter().zip(shape.iter().rev()).fold(0, |place, (index, side)| place * side + index);
-            (place, entry)
-        })
-        .collect();
-    placed.sort_by_key(|(place, _)| *place);
-    placed.into_iter().map(|(_, entry)| entry).collect()
-}
-
 /// The fields of a record, in their order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
@@ -216,20 +196,10 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// A text.
-pub(super) fn text(text: impl Into<String>) -> Value {
-    Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.into()] })
-}
-
 /// Texts below one another, each in a cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
-    let values: Vec<Value> = texts.into_iter().map(text).collect();
+    let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray { shape: vec![values.len(), 1], values })
-}
-
-/// A number.
-pub(super) fn scalar(value: f64) -> Value {
-    matrix(1, 1, vec![value])
 }
 
 /// Numbers beside one another.
@@ -247,10 +217,6 @@ pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
 /// A matrix, given column by column.
 pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
-}
-
-fn truth(value: bool) -> Value {
-    Value::Array(Array { kind: ElementKind::Logical, ..Array::matrix(1, 1, vec![f64::from(u8::from(value))]) })
 }
 
 #[cfg(test)]
@@ -290,9 +256,9 @@ mod tests {
         let json = "{\"of\": [{\"a\": true}, {\"2 b\": [[\"P\", \"LAT\"], [\"Q\", \"LON\"]]}]}";
         let Value::Struct(of) = field(json, &["of"]) else { panic!("structs") };
         assert_eq!(of.shape, [1, 2]);
-        assert_eq!(of.field("a").unwrap(), [truth(true), matrix(0, 0, Vec::new())]);
+        assert_eq!(of.field("a").unwrap(), [Value::truth(true), matrix(0, 0, Vec::new())]);
         let Value::Cell(pairs) = &of.field("x2_b").unwrap()[1] else { panic!("cells") };
-        assert_eq!((&pairs.shape, &pairs.values[1]), (&vec![2, 2], &text("Q")));
+        assert_eq!((&pairs.shape, &pairs.values[1]), (&vec![2, 2], &Value::text("Q")));
         let names = field("{\"ratios\": {\"V+5kt\": 1, \"V-5kt\": 2}}", &["ratios", "name"]);
         assert_eq!(names, cell_of_texts(["V+5kt", "V-5kt"].map(str::to_owned)));
     }

@@ -1,64 +1,30 @@
 //! A study's corrections for other tools: programs and tables that compute them outside of this one, corrected models, and all
-//! results as variables of MATLAB. Each is an [`Exporter`]; the command line, the window and the documentation go by [`EXPORTERS`].
+//! results as variables of MATLAB. Each is an [`ExportFormat`]; the command line, the window and the documentation go by [`EXPORTERS`].
 
 mod all_results;
 mod corrected_models;
-mod fault;
 mod lookup_table;
 mod matlab_struct;
 mod programs;
 mod scheduled;
-#[cfg(test)]
-mod tests;
 
-use std::fmt;
 use std::io::{self, Write};
-use std::iter::once;
-use std::ops::Deref;
 use std::path::Path;
-use std::sync::LazyLock;
 
 use gdcm_core::correction::Pade;
 use gdcm_core::dataset::ConditionId;
+use gdcm_core::message_text::quoted;
+use gdcm_core::schedule::ScheduleError;
 use gdcm_core::study::{Analysis, AssessedCorrection};
+use scheduled::Scheduled;
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
-use scheduled::Scheduled;
-
-pub use fault::ExportFault;
-
-/// Every export, in the order of their list.
-pub static EXPORTERS: LazyLock<Vec<&dyn Exporter>> = LazyLock::new(|| {
-    let programs = programs::PROGRAMS.iter().map(|program| program as &dyn Exporter);
-    let tables: [&dyn Exporter; 2] = [&lookup_table::TableCsv, &lookup_table::TableMat];
-    let results: [&dyn Exporter; 3] = [&corrected_models::CorrectedModels, &all_results::Csv, &all_results::Json];
-    once(&all_results::Mat as &dyn Exporter).chain(programs).chain(tables).chain(results).collect()
-});
+use crate::variables::VariableFault;
 
 /// Something that a study's corrections can be exported as.
-pub trait Exporter: Sync {
-    /// What it is called and what it needs.
-    fn about(&self) -> About;
-
-    /// Refuses a name of a file that does not fit: a question for before the work.
-    ///
-    /// # Errors
-    /// What is wrong with the name.
-    fn check_path(&self, _path: &Path) -> Result<(), ExportFault> {
-        Ok(())
-    }
-
-    /// The contents of the file.
-    ///
-    /// # Errors
-    /// Why there are none.
-    fn export<'e>(&'e self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault>;
-}
-
-/// What an export is called and what it needs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct About {
+#[derive(Clone, Copy, Debug)]
+pub struct ExportFormat {
     /// Its name on the command line.
     pub name: &'static str,
     /// The end of a file's name.
@@ -67,47 +33,41 @@ pub struct About {
     pub words: &'static str,
     /// The options of the command line that it takes.
     pub options: &'static [&'static str],
+    /// Refuses a name of a file that does not fit: a question for before the work.
+    check_path: fn(&Path) -> Result<(), ExportFault>,
+    /// The contents of the file.
+    export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// One of [`EXPORTERS`], the first of them before any choice.
-#[derive(Clone, Copy)]
-pub struct ExportFormat(&'static dyn Exporter);
+/// Every export, in the order of their list; the first of them before any choice.
+pub static EXPORTERS: [ExportFormat; 9] = [
+    all_results::MAT,
+    programs::MATLAB,
+    programs::PYTHON,
+    programs::C,
+    lookup_table::CSV,
+    lookup_table::MAT,
+    corrected_models::STATE_SPACE,
+    all_results::CSV,
+    all_results::JSON,
+];
 
 impl ExportFormat {
-    /// Every format, in the order of their list.
-    pub fn all() -> impl Iterator<Item = Self> {
-        EXPORTERS.iter().copied().map(Self)
-    }
-
     /// The format of this name.
     pub fn named(name: &str) -> Option<Self> {
-        Self::all().find(|format| format.about().name == name)
+        EXPORTERS.into_iter().find(|format| format.name == name)
     }
 }
 
 impl Default for ExportFormat {
     fn default() -> Self {
-        Self(EXPORTERS[0])
-    }
-}
-
-impl Deref for ExportFormat {
-    type Target = dyn Exporter;
-
-    fn deref(&self) -> &Self::Target {
-        self.0
+        EXPORTERS[0]
     }
 }
 
 impl PartialEq for ExportFormat {
     fn eq(&self, other: &Self) -> bool {
-        self.about().name == other.about().name
-    }
-}
-
-impl fmt::Debug for ExportFormat {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.about().name)
+        self.name == other.name
     }
 }
 
@@ -149,7 +109,7 @@ pub struct ExportSource {
     pub sha256: String,
 }
 
-/// What an exporter is given.
+/// What an export is made of.
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
     /// What was found.
@@ -208,7 +168,7 @@ impl<'e> Exported<'e> {
 /// # Errors
 /// [`FileError::Export`] with what is wrong with it.
 pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> {
-    format.check_path(path).map_err(|fault| FileError::export(path, fault))
+    (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
 /// Writes what a request asks for, and gives what is to be known of it, line by line.
@@ -220,9 +180,99 @@ pub fn write_export(
     mut outputs: OutputSet,
 ) -> Result<Vec<String>, FileError> {
     check_export(request.format, path)?;
-    let exported = request.format.export(&Export { analysis, source, request, path });
+    let exported = (request.format.export)(&Export { analysis, source, request, path });
     let Exported { write, remarks } = exported.map_err(|fault| FileError::export(path, fault))?;
     outputs.add(path, write)?;
     outputs.persist()?;
     Ok(remarks)
+}
+
+// Why something cannot be exported.
+
+/// Why something cannot be exported.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ExportFault {
+    /// A curve cannot be computed.
+    #[error("the {curve} of {channel} has a number that is not finite; correct it before it is exported")]
+    Curve {
+        /// The channel.
+        channel: String,
+        /// "gain" or "delay".
+        curve: &'static str,
+    },
+    /// The airspeeds asked for make no table.
+    #[error("the airspeeds of the table must be finite, increase, and be at least one")]
+    Breakpoints,
+    /// A file of MATLAB has a name that no function can have.
+    #[error(
+        "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
+         keyword nor a name that the file uses itself; found {}",
+        quoted(found)
+    )]
+    FunctionName {
+        /// The name of the file without its ending.
+        found: String,
+    },
+    /// The name of the file says none of the formats that models are written in.
+    #[error("models are written to a name that ends in .mat, .json or .npz")]
+    ModelsFormat,
+    /// The values cannot be written.
+    #[error(transparent)]
+    Variables(#[from] VariableFault),
+    /// There is no schedule to be exported.
+    #[error(transparent)]
+    Schedule(#[from] ScheduleError),
+    /// The study asks for couplings and has none: what would be exported is not what was asked for.
+    #[error("the study asks for couplings, and there are none: {why}; mend that, or set couplings to none")]
+    NoCouplings {
+        /// Why there are none.
+        why: String,
+    },
+    /// A condition has no result of its own.
+    #[error("condition {condition}: {why}")]
+    NoResult {
+        /// The condition.
+        condition: ConditionId,
+        /// Why not.
+        why: String,
+    },
+    /// The dataset has no such condition.
+    #[error("the dataset has no condition {condition}")]
+    NoCondition {
+        /// The id asked for.
+        condition: ConditionId,
+    },
+    /// A condition has no physics model of this name.
+    #[error("condition {condition} has no physics model \"{model}\"; name the condition that has it")]
+    NoModel {
+        /// The condition.
+        condition: ConditionId,
+        /// The name asked for.
+        model: String,
+    },
+    /// A model is known by its response only.
+    #[error("condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported")]
+    NoMatrices {
+        /// The condition.
+        condition: ConditionId,
+        /// The model.
+        model: String,
+    },
+    /// A corrected model cannot be written as matrices.
+    #[error("condition {condition}, model \"{model}\": {words}")]
+    Model {
+        /// The condition.
+        condition: ConditionId,
+        /// The model.
+        model: String,
+        /// Why not; see [`CorrectedModelError`](gdcm_core::correction::CorrectedModelError).
+        words: String,
+    },
+}
+
+impl ExportFault {
+    /// Whether it is the analysis that has not what is asked for; otherwise something else would have to be asked.
+    pub fn is_of_analysis(&self) -> bool {
+        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. })
+    }
 }

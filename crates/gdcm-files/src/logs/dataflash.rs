@@ -9,14 +9,12 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::logs::channel_meanings::{ARDUPILOT, give_meanings};
-use crate::logs::little_endian::{Scalar, array};
-use crate::logs::{TopicSamples, mode_spans, modes_note};
+use crate::logs::{ARDUPILOT, TopicSamples, array, give_meanings, mode_spans, modes_note};
 use crate::record_files::Columns;
+use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
@@ -25,26 +23,15 @@ const FORMAT: u8 = 128;
 const FORMAT_LENGTH: usize = 89;
 
 /// Logs of ArduPilot as bytes.
-pub(crate) struct DataFlash;
-
-impl Importer for DataFlash {
-    fn name(&self) -> &'static str {
-        "a DataFlash log of ArduPilot"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["bin"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(&[MARK[0], MARK[1], FORMAT])
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const DATAFLASH: Importer = Importer {
+    name: "a DataFlash log of ArduPilot",
+    endings: &["bin"],
+    recognises: |bytes, _| bytes.starts_with(&[MARK[0], MARK[1], FORMAT]),
+    read: |bytes, path, budget| {
         let columns = read_dataflash(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
-    }
-}
+    },
+};
 
 // What describes messages, in both forms of these logs.
 
@@ -52,7 +39,7 @@ impl Importer for DataFlash {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FieldKind {
     /// A number, and what it is multiplied by.
-    Number(Scalar, f64),
+    Number(StoredNumber, f64),
     /// So many bytes that are no number.
     Other(usize),
 }
@@ -60,32 +47,34 @@ pub(super) enum FieldKind {
 impl FieldKind {
     /// What a letter of a format means; none where it is none.
     fn of(letter: char) -> Option<Self> {
-        Some(match letter {
-            'b' => Self::Number(Scalar::I8, 1.0),
-            'B' | 'M' => Self::Number(Scalar::U8, 1.0),
-            'h' => Self::Number(Scalar::I16, 1.0),
-            'H' => Self::Number(Scalar::U16, 1.0),
-            'i' => Self::Number(Scalar::I32, 1.0),
-            'I' => Self::Number(Scalar::U32, 1.0),
-            'q' => Self::Number(Scalar::I64, 1.0),
-            'Q' => Self::Number(Scalar::U64, 1.0),
-            'f' => Self::Number(Scalar::F32, 1.0),
-            'd' => Self::Number(Scalar::F64, 1.0),
-            'c' => Self::Number(Scalar::I16, 0.01),
-            'C' => Self::Number(Scalar::U16, 0.01),
-            'e' => Self::Number(Scalar::I32, 0.01),
-            'E' => Self::Number(Scalar::U32, 0.01),
-            'L' => Self::Number(Scalar::I32, 1e-7),
-            'n' => Self::Other(4),
-            'N' => Self::Other(16),
-            'Z' | 'a' => Self::Other(64),
+        use NumberClass::{Float, Signed, Unsigned};
+        let (class, size, factor) = match letter {
+            'b' => (Signed, 1, 1.0),
+            'B' | 'M' => (Unsigned, 1, 1.0),
+            'h' => (Signed, 2, 1.0),
+            'H' => (Unsigned, 2, 1.0),
+            'i' => (Signed, 4, 1.0),
+            'I' => (Unsigned, 4, 1.0),
+            'q' => (Signed, 8, 1.0),
+            'Q' => (Unsigned, 8, 1.0),
+            'f' => (Float, 4, 1.0),
+            'd' => (Float, 8, 1.0),
+            'c' => (Signed, 2, 0.01),
+            'C' => (Unsigned, 2, 0.01),
+            'e' => (Signed, 4, 0.01),
+            'E' => (Unsigned, 4, 0.01),
+            'L' => (Signed, 4, 1e-7),
+            'n' => return Some(Self::Other(4)),
+            'N' => return Some(Self::Other(16)),
+            'Z' | 'a' => return Some(Self::Other(64)),
             _ => return None,
-        })
+        };
+        Some(Self::Number(StoredNumber::little_endian(class, size), factor))
     }
 
     fn size(self) -> usize {
         match self {
-            Self::Number(scalar, _) => scalar.size(),
+            Self::Number(number, _) => number.size(),
             Self::Other(size) => size,
         }
     }
@@ -227,8 +216,7 @@ impl Topics {
         let columns = self.by_name.into_values().flat_map(TopicSamples::columns).collect();
         let mut columns = Columns { notes, ..Columns::new(String::new(), columns) };
         if columns.columns.is_empty() {
-            let what = "a log without a message that has stamps and numbers".to_owned();
-            return Err(VariableFault::Damaged { variable: String::new(), what, offset: 0 });
+            return Err(VariableFault::damaged("", "a log without a message that has stamps and numbers", 0));
         }
         columns.notes.extend(give_meanings(&mut columns.columns, &ARDUPILOT));
         columns.notes.extend(modes_note(&modes));
@@ -254,7 +242,7 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
         None => Ok(()),
         Some(taken) => {
             let value = |at: usize| match taken.layout.fields.get(at)? {
-                (FieldKind::Number(scalar, factor), offset, _) => Some(scalar.at(content, *offset)? * factor),
+                (FieldKind::Number(number, factor), offset, _) => Some(number.at(content, *offset)? * factor),
                 _ => None,
             };
             topics.take(taken, value, budget)
@@ -327,7 +315,8 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
             }
         }
         "MULT" => {
-            let by = place("Mult").and_then(|(_, offset, _)| Scalar::F64.at(content, *offset));
+            let by = place("Mult")
+                .and_then(|(_, offset, _)| StoredNumber::little_endian(NumberClass::Float, 8).at(content, *offset));
             if let (Some(letter), Some(by)) = (byte("Id"), by) {
                 layouts.multipliers.insert(char::from(letter), by);
             }
@@ -339,6 +328,73 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
 /// Letters up to the first that is none.
 fn letters(bytes: &[u8]) -> String {
     bytes.iter().take_while(|byte| (32..127).contains(*byte)).map(|byte| char::from(*byte)).collect()
+}
+
+// The form as text: a line for each message, `NAME, value, value`, with what describes messages in FMT, FMTU, UNIT and MULT lines.
+// Values are as the log means them: hundredths are multiplied already.
+
+/// Logs of ArduPilot as text.
+pub(crate) const DATAFLASH_TEXT: Importer = Importer {
+    name: "a DataFlash log of ArduPilot as text",
+    endings: &["log"],
+    recognises: |bytes, _| {
+        let start: Vec<u8> = bytes.iter().take(40).copied().filter(|byte| *byte != b' ').collect();
+        start.starts_with(b"FMT,128,89,FMT,")
+    },
+    read: |bytes, path, budget| {
+        let columns = read_text(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
+        Ok(Contents::Logs(vec![columns]))
+    },
+};
+
+fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
+    budget.take(bytes.len() as u64, 1, "")?;
+    let text = String::from_utf8_lossy(bytes);
+    let layouts = layouts_of(&text);
+    let by_name: BTreeMap<&str, Taken<'_>> = layouts
+        .by_type
+        .values()
+        .filter_map(|layout| Some((layout.name.as_str(), Taken::of(layout, &layouts)?)))
+        .collect();
+    let mut topics = Topics::default();
+    for line in text.lines() {
+        budget.work(line.len() as u64, "")?;
+        let mut cells = line.split(',').map(str::trim);
+        let Some(taken) = cells.next().and_then(|name| by_name.get(name)) else { continue };
+        let cells: Vec<&str> = cells.collect();
+        topics.take(taken, |at| cells.get(at)?.parse::<f64>().ok(), budget)?;
+    }
+    topics.columns(vec!["a log of ArduPilot as text; time in seconds since the autopilot was started".to_owned()])
+}
+
+/// What the lines that describe others say.
+fn layouts_of(text: &str) -> Layouts {
+    let mut layouts = Layouts::default();
+    for line in text.lines() {
+        let (name, rest) = line.split_once(',').unwrap_or((line, ""));
+        let cells: Vec<&str> = match name.trim() {
+            "FMT" => rest.splitn(5, ',').map(str::trim).collect(),
+            "FMTU" | "UNIT" | "MULT" => rest.split(',').map(str::trim).collect(),
+            _ => continue,
+        };
+        let letter = |cell: &str| cell.parse::<u8>().map(char::from).ok().or_else(|| cell.chars().next());
+        match (name.trim(), cells.as_slice()) {
+            ("FMT", [kind, _, name, letters, names]) => {
+                if let (Ok(kind), Some(layout)) = (kind.parse(), Layout::of(name, letters, names)) {
+                    layouts.by_type.insert(kind, layout);
+                }
+            }
+            ("FMTU", [_, kind, units, by]) => {
+                kind.parse().into_iter().for_each(|kind| layouts.describe(kind, units, by));
+            }
+            ("UNIT", [_, id, label]) => {
+                letter(id).into_iter().for_each(|id| drop(layouts.units.insert(id, (*label).to_owned())));
+            }
+            // Values of a text are multiplied already.
+            _ => {}
+        }
+    }
+    layouts
 }
 
 #[cfg(test)]
@@ -418,5 +474,26 @@ pub(super) mod tests {
         let columns = read(&bytes[..bytes.len() - 5]).unwrap();
         assert!(columns.notes.iter().any(|note| note.contains("bytes between messages")), "{:?}", columns.notes);
         assert!(read(&bytes[..200]).is_err() && read(&[]).is_err());
+    }
+}
+
+#[cfg(test)]
+mod text_tests {
+    use super::*;
+
+    #[test]
+    fn a_line_for_each_message_is_read_with_units() {
+        let mut text = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\nFMT, 130, 44, FMTU, QBNN, TimeUS,FmtType,UnitIds,MultIds\n\
+                        FMT, 140, 19, RATE, Qff, TimeUS,R,ROut\nUNIT, 0, 107, deg/s\nFMTU, 0, 140, sk-, F--\n"
+            .to_owned();
+        for k in 0..30 {
+            text += &format!("RATE, {}, {k}, 0.{k}\nMSG, {k}, hello, there\n", 1_000_000 + 2500 * k);
+        }
+        assert!((DATAFLASH_TEXT.recognises)(text.as_bytes(), "log"));
+        let columns = read_text(text.as_bytes(), &ReadingBudget::new(1 << 20)).unwrap();
+        let rate = &columns.columns[0];
+        assert_eq!((rate.name.as_str(), rate.unit.as_deref(), rate.meaning), ("RATE.R", Some("deg/s"), Some("P")));
+        assert_eq!((rate.values[4], columns.columns.len()), (4.0, 2));
+        assert!(read_text(b"FMT, 128, 89, FMT, BBnNZ, Type\n", &ReadingBudget::new(1 << 20)).is_err());
     }
 }

@@ -10,17 +10,14 @@
 //! Stamps count microseconds since the autopilot was started. The data of a log that a crash cut end where they end.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use gdcm_core::records::ModeSpan;
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::logs::channel_meanings::{PX4, give_meanings};
-use crate::logs::little_endian::{Scalar, array};
-use crate::logs::ulog_format::{Formats, Place, places_of};
-use crate::logs::{TopicSamples, mode_spans, modes_note};
+use crate::logs::{PX4, TopicSamples, array, give_meanings, mode_spans, modes_note};
 use crate::record_files::Columns;
+use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
@@ -29,26 +26,15 @@ const HEADER: usize = 16;
 const APPENDED: u8 = 1;
 
 /// Logs of PX4.
-pub(crate) struct ULog;
-
-impl Importer for ULog {
-    fn name(&self) -> &'static str {
-        "a ULog of PX4"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["ulg", "ulog"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(MAGIC)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const ULOG: Importer = Importer {
+    name: "a ULog of PX4",
+    endings: &["ulg", "ulog"],
+    recognises: |bytes, _| bytes.starts_with(MAGIC),
+    read: |bytes, path, budget| {
         let columns = read_ulog(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
-    }
-}
+    },
+};
 
 /// A topic of a number, and where its data stand in a message.
 struct Subscription {
@@ -70,7 +56,7 @@ struct Messages<'b> {
 
 fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     if bytes.len() < HEADER {
-        return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
+        return Err(VariableFault::cut_off("", bytes.len()));
     }
     let mut messages = Messages::default();
     let (mut at, mut appended, mut is_cut) = (HEADER, Vec::new(), false);
@@ -102,9 +88,8 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
 fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
     if unknown.into_iter().any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0) {
-        let what = "a ULog with parts of a later version".to_owned();
-        let remedy = "save its topics as CSV: ulog2csv \"{file}\"".to_owned();
-        return Err(VariableFault::Unsupported { variable: String::new(), what, remedy });
+        let remedy = "save its topics as CSV: ulog2csv \"{file}\"";
+        return Err(VariableFault::unsupported("", "a ULog with parts of a later version", remedy));
     }
     let offsets = (0..3).filter_map(|index| array(flags, 16 + 8 * index).map(u64::from_le_bytes));
     Ok(offsets.filter(|offset| *offset > 0).filter_map(|offset| usize::try_from(offset).ok()).collect())
@@ -128,12 +113,12 @@ impl<'b> Messages<'b> {
                     self.unread += 1;
                     return Ok(());
                 };
-                let time_us = topic.stamp.scalar.at(data, topic.stamp.offset);
+                let time_us = topic.stamp.number.at(data, topic.stamp.offset);
                 let Some(time_us) = time_us.filter(|_| data.len() >= topic.least) else {
                     self.unread += 1;
                     return Ok(());
                 };
-                let values = topic.places.iter().map(|place| place.scalar.at(data, place.offset).unwrap_or(f64::NAN));
+                let values = topic.places.iter().map(|place| place.number.at(data, place.offset).unwrap_or(f64::NAN));
                 topic.samples.push(time_us * 1e-6, values, budget)?;
             }
             b'O' => {
@@ -157,10 +142,10 @@ impl<'b> Messages<'b> {
             Err(_) => return Ok(()),
             Ok(places) => places,
         };
-        let is_stamp = |place: &Place| place.name == "timestamp" && place.scalar == Scalar::U64;
+        let is_stamp = |place: &Place| place.name == "timestamp" && Some(place.number) == number_of("uint64_t");
         let Some(stamp) = places.iter().find(|place| is_stamp(place)).cloned() else { return Ok(()) };
         let places: Vec<Place> = places.into_iter().filter(|place| !is_stamp(place)).collect();
-        let least = places.iter().chain([&stamp]).map(|place| place.offset + place.scalar.size()).max().unwrap_or(0);
+        let least = places.iter().chain([&stamp]).map(|place| place.offset + place.number.size()).max().unwrap_or(0);
         let name = if instance == 0 { name.to_owned() } else { format!("{name}[{instance}]") };
         let samples = TopicSamples::new(name, places.iter().map(|place| (place.name.clone(), None)));
         self.subscriptions.entry(number).or_insert(Subscription { samples, stamp, places, least });
@@ -172,7 +157,7 @@ impl<'b> Messages<'b> {
         let modes = modes_of(&topics);
         let mut columns = Columns::new(String::new(), topics.into_iter().flat_map(TopicSamples::columns).collect());
         if columns.columns.is_empty() {
-            return Err(VariableFault::CutOff { variable: String::new(), offset: HEADER as u64 });
+            return Err(VariableFault::cut_off("", HEADER));
         }
         columns.notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
         columns.notes.extend(give_meanings(&mut columns.columns, &PX4));
@@ -223,6 +208,118 @@ const NAVIGATION: [(u8, &str); 13] = [
     (18, "land"),
     (21, "orbit"),
 ];
+
+// The layouts of messages: fields of numbers, of arrays and of other layouts, as a flat list of numbers.
+
+/// The most bytes that a message can have: its length is a number of 16 bits.
+const LARGEST: usize = 65_535;
+/// Layouts inside one another.
+const DEEPEST: usize = 8;
+
+/// A number in the data of a message.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Place {
+    /// Its name: `xyz[0]`, `esc[1].esc_rpm`.
+    pub(super) name: String,
+    pub(super) number: StoredNumber,
+    pub(super) offset: usize,
+}
+
+/// Layouts by the name of their message, as they stand in the file: `uint64_t timestamp;float[3] xyz`.
+pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
+
+/// The numbers in a message of this name, and how many bytes it has.
+///
+/// # Errors
+/// A layout that is missing, in a circle, or longer than any message.
+pub(super) fn places_of(
+    name: &str,
+    formats: &Formats<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<(Vec<Place>, usize), VariableFault> {
+    let mut flat = Flat { formats, budget, message: name, places: Vec::new() };
+    let size = flat.add(name, "", 0, DEEPEST)?;
+    Ok((flat.places, size))
+}
+
+struct Flat<'a> {
+    formats: &'a Formats<'a>,
+    budget: &'a ReadingBudget<'a>,
+    message: &'a str,
+    places: Vec<Place>,
+}
+
+impl Flat<'_> {
+    fn damaged(&self, what: String) -> VariableFault {
+        VariableFault::damaged(self.message, what, 0)
+    }
+
+    /// Adds the numbers of a layout from a place on; gives where it ends.
+    fn add(&mut self, name: &str, prefix: &str, mut offset: usize, deeper: usize) -> Result<usize, VariableFault> {
+        if deeper == 0 {
+            return Err(VariableFault::too_deep(self.message));
+        }
+        let Some(fields) = self.formats.get(name) else {
+            return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
+        };
+        for field in fields.split(';').map(str::trim).filter(|field| !field.is_empty()) {
+            let Some((kind, field)) = field.split_once(' ') else {
+                return Err(self.damaged(format!("\"{}\" is no field", short(field))));
+            };
+            let is_array = kind.ends_with(']');
+            let (kind, count) = match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
+                Some((kind, count)) => (kind, count.parse::<usize>().ok().filter(|count| *count <= LARGEST)),
+                None => (kind, Some(1)),
+            };
+            let Some(count) = count else { return Err(self.damaged(format!("\"{}\" has no length", short(field)))) };
+            for index in 0..count {
+                let label = if is_array { format!("{prefix}{field}[{index}]") } else { format!("{prefix}{field}") };
+                let begin = offset;
+                self.budget.work(1, self.message)?;
+                offset = match number_of(kind) {
+                    Some(number) => {
+                        if !field.starts_with("_padding") {
+                            self.budget.take(1, (size_of::<Place>() + label.len()) as u64, self.message)?;
+                            self.places.push(Place { name: label, number, offset });
+                        }
+                        offset + number.size()
+                    }
+                    None if kind == "char" => offset + 1,
+                    None => self.add(kind, &format!("{label}."), offset, deeper - 1)?,
+                };
+                // What has no bytes could stand there any number of times.
+                if offset == begin || offset > LARGEST {
+                    return Err(self.damaged(format!("the field \"{}\" has no length, or too much", short(field))));
+                }
+            }
+        }
+        Ok(offset)
+    }
+}
+
+/// The number that a name of a type of C means; none where it means none.
+fn number_of(kind: &str) -> Option<StoredNumber> {
+    use NumberClass::{Float, Signed, Unsigned};
+    let (class, size) = match kind {
+        "int8_t" => (Signed, 1),
+        "uint8_t" | "bool" => (Unsigned, 1),
+        "int16_t" => (Signed, 2),
+        "uint16_t" => (Unsigned, 2),
+        "int32_t" => (Signed, 4),
+        "uint32_t" => (Unsigned, 4),
+        "int64_t" => (Signed, 8),
+        "uint64_t" => (Unsigned, 8),
+        "float" => (Float, 4),
+        "double" => (Float, 8),
+        _ => return None,
+    };
+    Some(StoredNumber::little_endian(class, size))
+}
+
+/// As much of a name as a message can bear.
+fn short(name: &str) -> String {
+    name.chars().take(60).filter(|letter| !letter.is_control()).collect()
+}
 
 #[cfg(test)]
 mod tests {
@@ -286,5 +383,30 @@ mod tests {
         let mut bytes = log(3);
         bytes[16 + 3 + 8] = 2;
         assert!(read(&bytes).err().unwrap().to_string().contains("ulog2csv"));
+    }
+}
+
+#[cfg(test)]
+mod layout_tests {
+    use super::*;
+
+    #[test]
+    fn layouts_inside_layouts_become_a_flat_list() {
+        let formats = Formats::from([
+            ("esc", "uint64_t timestamp;one[2] esc;uint8_t[3] _padding0;"),
+            ("one", "int16_t rpm;char[4] name;float v"),
+        ]);
+        let (places, size) = places_of("esc", &formats, &ReadingBudget::new(1 << 20)).unwrap();
+        let found: Vec<(&str, usize)> = places.iter().map(|place| (place.name.as_str(), place.offset)).collect();
+        let expected = [("timestamp", 0), ("esc[0].rpm", 8), ("esc[0].v", 14), ("esc[1].rpm", 18), ("esc[1].v", 24)];
+        assert_eq!((found, size), (expected.to_vec(), 31));
+    }
+
+    #[test]
+    fn circles_and_layouts_without_bytes_are_refused() {
+        let formats = Formats::from([("a", "a x"), ("b", "none[60000] x"), ("none", ""), ("c", "float[99999999] x")]);
+        for name in ["a", "b", "c", "d"] {
+            assert!(places_of(name, &formats, &ReadingBudget::new(1 << 20)).is_err(), "{name}");
+        }
     }
 }

@@ -5,9 +5,9 @@
 use std::collections::HashSet;
 
 use crate::mat::level5::{ByteOrder, Cursor, name_of};
-use crate::mat::matrix::{Entries, rows};
+use crate::mat::matrix::rows;
 use crate::mat::{FieldPath, count};
-use crate::strides::{NumberClass, StoredNumber};
+use crate::strides::{Entries, NumberClass, StoredNumber};
 use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// What stands before each matrix.

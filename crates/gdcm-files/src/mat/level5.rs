@@ -204,7 +204,7 @@ impl<'b> Cursor<'b> {
 
     /// The fault that the bytes here contradict the format.
     pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
-        VariableFault::Damaged { variable: String::new(), what: what.into(), offset: self.offset }
+        VariableFault::damaged("", what, self.offset)
     }
 
     fn too_short(&self) -> VariableFault {

@@ -5,9 +5,8 @@
 use crate::mat::level5::{Cursor, DataKind, Element, behind, matrix};
 use crate::mat::subsystem::{Reference, Subsystem};
 use crate::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
-use crate::variables::{
-    Array, CellArray, ElementKind, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
-};
+use crate::strides::Entries;
+use crate::variables::{Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
 /// What reading an array takes besides its bytes.
 #[derive(Clone, Copy)]
@@ -52,7 +51,7 @@ impl Arrays<'_> {
         let element = Element::read(contents)?;
         let mut data = matrix(element)?;
         if data.is_empty() {
-            return Ok(Value::Array(Array::matrix(0, 0, Vec::new())));
+            return Ok(Value::empty());
         }
         let header = Header::read(&mut data, self.budget)?;
         let value = self.contents(&header, &mut data, trail)?;
@@ -250,7 +249,7 @@ pub(crate) fn rows(
     let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
-        return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
+        return Ok(TextArray::one(""));
     }
     let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
     let texts = count(&shape);
@@ -300,71 +299,6 @@ fn of_utf8(bytes: &[u8], wanted: usize) -> Vec<u32> {
     }
 }
 
-// Matrices of which only the numbers other than zero are stored, filled up.
-
-/// The numbers other than zero, each with its place.
-pub(crate) struct Entries {
-    /// Number of rows and columns.
-    pub(super) shape: [usize; 2],
-    /// What the numbers are.
-    pub(super) kind: ElementKind,
-    /// Row of each number, counted from 0.
-    pub(super) rows: Vec<usize>,
-    /// Column of each number, counted from 0.
-    pub(super) columns: Vec<usize>,
-    /// Real part of each number.
-    pub(super) re: Vec<f64>,
-    /// Imaginary part of each number of complex ones.
-    pub(super) im: Option<Vec<f64>>,
-}
-
-impl Entries {
-    /// Those of numbers that stand column by column, `starts` being where each column begins among them and where the last ends;
-    /// nothing where that does not fit them. Room for further numbers may have been left behind the last.
-    pub(crate) fn of_columns(
-        shape: [usize; 2],
-        kind: ElementKind,
-        mut rows: Vec<usize>,
-        starts: &[usize],
-        (re, im): (Vec<f64>, Option<Vec<f64>>),
-    ) -> Option<Self> {
-        let stored = *starts.last()?;
-        let short = stored > rows.len() || stored > re.len() || im.as_ref().is_some_and(|im| stored > im.len());
-        if starts.len() != shape[1].checked_add(1)? || starts[0] != 0 || !starts.is_sorted() || short {
-            return None;
-        }
-        rows.truncate(stored);
-        let runs = starts.windows(2).enumerate();
-        let columns = runs.flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0])).collect();
-        Some(Self { shape, kind, rows, columns, re, im })
-    }
-
-    /// The whole matrix; what two entries say of the same place is added.
-    ///
-    /// `outside` is the fault that a number lies outside the matrix.
-    pub(crate) fn filled(
-        &self,
-        variable: &str,
-        budget: &ReadingBudget<'_>,
-        outside: impl Fn() -> VariableFault,
-    ) -> Result<Array, VariableFault> {
-        let [height, width] = self.shape;
-        let count = (height as u64).saturating_mul(width as u64);
-        budget.take(count, if self.im.is_some() { 16 } else { 8 }, variable)?;
-        let fill = |values: &[f64]| {
-            let mut filled = vec![0.0; height.saturating_mul(width)];
-            for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
-                let inside = row < height && column < width;
-                let place = if inside { filled.get_mut(column * height + row) } else { None };
-                *place.ok_or_else(&outside)? += value;
-            }
-            Ok(filled)
-        };
-        let im = self.im.as_deref().map(fill).transpose()?;
-        Ok(Array { shape: self.shape.to_vec(), kind: self.kind, re: fill(&self.re)?, im })
-    }
-}
-
 // Arrays whose contents lie elsewhere in the file: objects of classes, and what cannot be read.
 //
 // The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler, matio (Python) and
@@ -380,9 +314,8 @@ pub(super) fn opaque_value(
     let class = Element::read(contents)?.name()?;
     if system != "MCOS" {
         Element::pass_all(contents)?;
-        let why = "only objects of MATLAB's own classes are read; in MATLAB, save what it holds as numbers or text"
-            .to_owned();
-        return Ok(Value::Opaque { class: format!("{class} ({system})"), why });
+        let why = "only objects of MATLAB's own classes are read; in MATLAB, save what it holds as numbers or text";
+        return Ok(Value::opaque(format!("{class} ({system})"), why));
     }
     let contents = arrays.inner(contents, trail)?;
     let variable = trail.words();
@@ -405,7 +338,7 @@ pub(super) fn unread(class: &str, trail: &FieldPath<'_>) -> Value {
 /// A value that cannot be read, and how to come by its data all the same.
 pub(super) fn unread_because(class: &str, why: &str, variable: &str) -> Value {
     let line = export_line(class, variable);
-    Value::Opaque { class: class.to_owned(), why: format!("{why}; in MATLAB, save its data: {line}") }
+    Value::opaque(class, format!("{why}; in MATLAB, save its data: {line}"))
 }
 
 #[cfg(test)]
@@ -567,31 +500,6 @@ mod text_tests {
         assert_eq!(read(4, &[], &[1, 3]).unwrap().texts, ["   "]);
         assert!(matches!(read(4, &[65, 0], &[1, 3]), Err(VariableFault::Damaged { .. })));
         assert!(matches!(read(4, &[], &[1 << 20, 1 << 20]), Err(VariableFault::TooLarge { .. })));
-    }
-}
-
-#[cfg(test)]
-mod sparse_tests {
-    use super::*;
-
-    fn entries(shape: [usize; 2]) -> Entries {
-        let (rows, columns) = (vec![0, 1], vec![1, 0]);
-        Entries { shape, kind: ElementKind::Float, rows, columns, re: vec![2.0, 3.0], im: Some(vec![0.0, 1.0]) }
-    }
-
-    #[test]
-    fn what_is_not_stored_is_zero() {
-        let budget = ReadingBudget::new(1000);
-        let array = entries([2, 2]).filled("", &budget, || VariableFault::Stopped).unwrap();
-        assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
-    }
-
-    #[test]
-    fn places_outside_and_sizes_beyond_the_limit_are_refused() {
-        let budget = ReadingBudget::new(1000);
-        assert_eq!(entries([1, 2]).filled("", &budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
-        let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
-        assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }
 }
 

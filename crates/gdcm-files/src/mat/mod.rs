@@ -9,15 +9,12 @@ mod matrix;
 mod subsystem;
 mod writer;
 
-use std::path::Path;
-
-use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::mat::level5::{ByteOrder, Cursor, DataKind, Element, matrix, unpacked};
 use crate::mat::matrix::{Arrays, field_names, long_words, places};
 use crate::variables::{ElementKind, ReadingBudget, Value, Variable, VariableFault};
 
-pub(crate) use crate::mat::matrix::{Entries, rows};
+pub(crate) use crate::mat::matrix::rows;
 pub(crate) use crate::mat::subsystem::Subsystem;
 pub use crate::mat::writer::{write, write_packed};
 
@@ -29,25 +26,12 @@ const LEVEL_5: u8 = 1;
 const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 
 /// Files of MATLAB up to version 7.
-pub(crate) struct Mat;
-
-impl Importer for Mat {
-    fn name(&self) -> &'static str {
-        "a .mat file of MATLAB up to version 7"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["mat"]
-    }
-
-    fn recognises(&self, bytes: &[u8], ending: &str) -> bool {
-        ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5)))
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
-        Contents::variables(read(bytes, budget), path)
-    }
-}
+pub(crate) const MAT: Importer = Importer {
+    name: "a .mat file of MATLAB up to version 7",
+    endings: &["mat"],
+    recognises: |bytes, ending| ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5))),
+    read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
+};
 
 /// The variables of a file, in their order.
 ///
@@ -55,15 +39,17 @@ impl Importer for Mat {
 /// fault of the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
-        return Err(format("an HDF5 file, as MATLAB writes with -v7.3"));
+        return Err(VariableFault::format(EXPECTED, "an HDF5 file, as MATLAB writes with -v7.3"));
     }
     // The text that a file of level 5 begins with is what tells it from one of level 4: four bytes that are not zero.
     let text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match level5::version(bytes) {
         Some((order, LEVEL_5)) if text || !level4::begins(bytes) => level5::read(bytes, order, budget),
         _ if level4::begins(bytes) => level4::read(bytes, budget),
-        Some((_, version)) if text => Err(format(format!("a .mat file of the unknown version {version}"))),
-        _ => Err(format(beginning(bytes))),
+        Some((_, version)) if text => {
+            Err(VariableFault::format(EXPECTED, format!("a .mat file of the unknown version {version}")))
+        }
+        _ => Err(VariableFault::format(EXPECTED, beginning(bytes))),
     }
 }
 
@@ -73,10 +59,6 @@ pub fn is_hdf5(bytes: &[u8]) -> bool {
     let doubled = std::iter::successors(Some(512_usize), |at| at.checked_mul(2)).take_while(|&at| at < bytes.len());
     let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(&HDF5_SIGNATURE));
     std::iter::once(0).chain(doubled).any(signed)
-}
-
-fn format(found: impl Into<String>) -> VariableFault {
-    VariableFault::Format { expected: EXPECTED, found: found.into() }
 }
 
 fn beginning(bytes: &[u8]) -> String {
@@ -218,7 +200,7 @@ impl<'t> FieldPath<'t> {
     /// One step on.
     fn step(&'t self, step: Step<'t>) -> Result<FieldPath<'t>, VariableFault> {
         if self.depth >= DEEPEST {
-            return Err(VariableFault::TooDeep { variable: self.words() });
+            return Err(VariableFault::too_deep(&self.words()));
         }
         Ok(FieldPath { before: Some(self), step, depth: self.depth + 1 })
     }
@@ -235,22 +217,8 @@ impl<'t> FieldPath<'t> {
     }
 
     /// Says in a fault which value it concerns, unless it says so already.
-    fn name(&self, mut fault: VariableFault) -> VariableFault {
-        match &mut fault {
-            VariableFault::CutOff { variable, .. }
-            | VariableFault::Damaged { variable, .. }
-            | VariableFault::Unsupported { variable, .. }
-            | VariableFault::TooLarge { variable, .. }
-            | VariableFault::TooMuchWork { variable, .. }
-            | VariableFault::Line { variable, .. }
-            | VariableFault::TooDeep { variable } => {
-                if variable.is_empty() {
-                    *variable = self.words();
-                }
-            }
-            VariableFault::Format { .. } | VariableFault::Duplicate { .. } | VariableFault::Stopped => {}
-        }
-        fault
+    fn name(&self, fault: VariableFault) -> VariableFault {
+        fault.of(|| self.words())
     }
 }
 

@@ -108,7 +108,7 @@ pub(super) fn contents(value: &Value, name: &str) -> Vec<u8> {
         Value::Cell(values) => cell(values, name),
         Value::Struct(fields) => records(fields, name),
         Value::Object(object) => records(&object.records, name),
-        Value::Opaque { .. } => array(&Array::matrix(0, 0, Vec::new()), name),
+        Value::Opaque { .. } => contents(&Value::empty(), name),
     }
 }
 
@@ -180,8 +180,7 @@ fn text(text: &TextArray, name: &str) -> Vec<u8> {
 
 /// Texts of different lengths, each in a cell.
 fn texts(texts: &TextArray, name: &str) -> Vec<u8> {
-    let single = |text: &String| Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.clone()] });
-    cell(&CellArray { shape: texts.shape.clone(), values: texts.texts.iter().map(single).collect() }, name)
+    cell(&CellArray { shape: texts.shape.clone(), values: texts.texts.iter().map(Value::text).collect() }, name)
 }
 
 fn cell(cell: &CellArray, name: &str) -> Vec<u8> {

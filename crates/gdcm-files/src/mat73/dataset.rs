@@ -3,7 +3,7 @@
 use hdf5_pure::{Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
 
 use crate::mat73::{damaged, fault};
-use crate::strides::{NumberClass, Places, StoredNumber, count};
+use crate::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
 use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
 /// Whether the elements run as MATLAB or as C keeps them.
@@ -45,7 +45,15 @@ impl Elements {
         budget.take(elements as u64, size, path)?;
         check(dataset, &sides, size, path, budget)?;
         let bytes = dataset.read_raw().map_err(failed)?;
-        let (shape, size) = (matrix_shape(sides, order), usize::try_from(size).map_err(|_| too_many())?);
+        let size = usize::try_from(size).map_err(|_| too_many())?;
+        let shape = match order {
+            Order::Rows => matrix_shape(&sides),
+            Order::Columns => {
+                let mut shape: Vec<usize> = sides.into_iter().rev().collect();
+                shape.resize(shape.len().max(2), 1);
+                shape
+            }
+        };
         let none = bytes.is_empty() && elements == 1;
         // h5py's Empty has no shape and no element, which the library tells by the bytes alone.
         let (shape, elements) = if none { (vec![0, 0], 0) } else { (shape, elements) };
@@ -98,18 +106,6 @@ impl Elements {
     }
 }
 
-fn matrix_shape(mut sides: Vec<usize>, order: Order) -> Vec<usize> {
-    if order == Order::Columns {
-        sides.reverse();
-        sides.resize(sides.len().max(2), 1);
-    }
-    match *sides.as_slice() {
-        [] => vec![1, 1],
-        [columns] => vec![1, columns],
-        _ => sides,
-    }
-}
-
 // Chunks, in which datasets are packed.
 
 /// What the library keeps for each chunk of a dataset while it reads \[bytes\].
@@ -138,9 +134,8 @@ pub(super) fn check(
     budget.take(most, CHUNK, path)?;
     let index = dataset.chunk_index().map_err(failed)?;
     if index == Some(ChunkIndex::BTreeV2) {
-        let (what, remedy) = ("a dataset that can grow in two directions", "write it with a shape that is fixed");
-        let (what, remedy) = (what.to_owned(), remedy.to_owned());
-        return Err(VariableFault::Unsupported { variable: path.to_owned(), what, remedy });
+        let remedy = "write it with a shape that is fixed";
+        return Err(VariableFault::unsupported(path, "a dataset that can grow in two directions", remedy));
     }
     let longest = elements.saturating_mul(size).saturating_mul(2).saturating_add(OVERHEAD);
     let chunks = dataset.chunks().map_err(failed)?;

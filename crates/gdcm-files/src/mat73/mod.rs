@@ -14,7 +14,6 @@ mod dataset;
 mod values;
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -23,7 +22,6 @@ use hdf5_pure::{
     ReferenceType, Source, is_hdf5_bytes,
 };
 
-use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::mat::is_hdf5;
 use crate::mat73::dataset::{Elements, Order};
@@ -34,22 +32,11 @@ use crate::variables::{
 };
 
 /// MATLAB 7.3 and HDF5.
-pub(crate) struct Hdf5;
-
-impl Importer for Hdf5 {
-    fn name(&self) -> &'static str {
-        "an HDF5 file, as MATLAB writes with -v7.3"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["mat", "h5", "hdf5"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        is_hdf5(bytes)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const HDF5: Importer = Importer {
+    name: "an HDF5 file, as MATLAB writes with -v7.3",
+    endings: &["mat", "h5", "hdf5"],
+    recognises: |bytes, _| is_hdf5(bytes),
+    read: |bytes, path, budget| {
         let read = open(bytes, budget).and_then(|file| {
             let objects = Objects::read(&file, budget)?;
             Reader { budget, objects: &objects }.variables(&file.root())
@@ -59,8 +46,8 @@ impl Importer for Hdf5 {
             budget.work(0, "").and(read).and_then(|variables| octave::unwrapped(variables, budget)),
             path,
         )
-    }
-}
+    },
+};
 
 // Values as datasets and groups hold them, one within another.
 
@@ -92,17 +79,17 @@ impl Reader<'_> {
     /// The value of a dataset or group; `path` is what faults call it.
     fn value(&self, object: &Object, path: &str, depth: usize) -> Result<Value, VariableFault> {
         if depth >= DEEPEST {
-            return Err(VariableFault::TooDeep { variable: path.to_owned() });
+            return Err(VariableFault::too_deep(path));
         }
         self.budget.take(1, HEADER, path)?;
         let value = match object {
             Object::Dataset(dataset) => self.dataset(dataset, path, depth),
             Object::Group(group) => group_value(self, group, path, depth),
-            _ => Ok(unread("an HDF5 object", "it is neither a dataset nor a group")),
+            _ => Ok(Value::opaque("an HDF5 object", "it is neither a dataset nor a group")),
         };
         match value {
             // The other variables can be read all the same.
-            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(unread(&what, &remedy)),
+            Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
             value => value,
         }
     }
@@ -115,7 +102,7 @@ impl Reader<'_> {
             return empty(&marks, &elements, path, self.budget);
         }
         if marks.decode == FUNCTION_HANDLE {
-            return Ok(unread("function_handle", "functions are not data"));
+            return Ok(Value::opaque("function_handle", "functions are not data"));
         }
         if is_reference(&elements.datatype) {
             return self.cell(dataset, &elements, path, depth);
@@ -135,7 +122,8 @@ impl Reader<'_> {
             return Ok(Value::Text(texts));
         }
         let records = records(&elements, path, self.budget)?;
-        Ok(records.map_or_else(|| unread("an HDF5 dataset", "it holds neither numbers nor texts"), Value::Struct))
+        Ok(records
+            .map_or_else(|| Value::opaque("an HDF5 dataset", "it holds neither numbers nor texts"), Value::Struct))
     }
 
     /// A cell for each reference.
@@ -164,15 +152,10 @@ fn is_reference(datatype: &Datatype) -> bool {
     matches!(datatype, Datatype::Reference { ref_type: ReferenceType::Object, .. })
 }
 
-fn unread(class: &str, why: &str) -> Value {
-    Value::Opaque { class: class.to_owned(), why: why.to_owned() }
-}
-
 /// Opens a file, which is copied, and finds it whole; a user block such as MATLAB's may stand before it.
 fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
     if !is_hdf5_bytes(bytes) {
-        let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
-        return Err(VariableFault::Format { expected: "a file of MATLAB 7.3 or HDF5", found: found.to_owned() });
+        return Err(VariableFault::other_bytes("a file of MATLAB 7.3 or HDF5", bytes));
     }
     budget.take(bytes.len() as u64, 1, "")?;
     // What a cache gave out would not count.
@@ -181,7 +164,7 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
     let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
     // Chunks at the end may be missing without any structure reaching beyond it.
     if file.superblock().eof_address > bytes.len() as u64 {
-        return Err(VariableFault::CutOff { variable: String::new(), offset: bytes.len() as u64 });
+        return Err(VariableFault::cut_off("", bytes.len()));
     }
     Ok(file)
 }
@@ -192,9 +175,8 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
 ///
 /// The library does not tell where in the file it stopped.
 fn fault(error: &Error, path: &str) -> VariableFault {
-    let variable = path.to_owned();
     match error {
-        Error::Format(FormatError::NestingDepthExceeded) => VariableFault::TooDeep { variable },
+        Error::Format(FormatError::NestingDepthExceeded) => VariableFault::too_deep(path),
         Error::Format(FormatError::UnexpectedEof { .. }) => damaged(path, "something lies beyond the end of the file"),
         Error::Format(
             FormatError::UnsupportedFilter(_)
@@ -207,9 +189,8 @@ fn fault(error: &Error, path: &str) -> VariableFault {
             | FormatError::UnsupportedZfp(_),
         ) => {
             // HDF5 2.0 chunks by a layout of its own where it is asked for its latest format.
-            let remedy =
-                "write it with compression gzip or none, in one file, in the format of HDF5 1.14 or earlier".to_owned();
-            VariableFault::Unsupported { variable, what: format!("a dataset of this kind ({error})"), remedy }
+            let remedy = "write it with compression gzip or none, in one file, in the format of HDF5 1.14 or earlier";
+            VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
         }
         _ => damaged(path, &error.to_string()),
     }
@@ -217,7 +198,7 @@ fn fault(error: &Error, path: &str) -> VariableFault {
 
 /// The bytes contradict the format.
 fn damaged(path: &str, what: &str) -> VariableFault {
-    VariableFault::Damaged { variable: path.to_owned(), what: what.to_owned(), offset: 0 }
+    VariableFault::damaged(path, what, 0)
 }
 
 // A file's bytes, of which only so many are given out.
@@ -353,9 +334,9 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
     }
     match (marks.decode, marks.class()) {
         (FUNCTION_HANDLE, _) | (_, "function_handle") => {
-            return Ok(unread("function_handle", "functions are not data"));
+            return Ok(Value::opaque("function_handle", "functions are not data"));
         }
-        (OBJECT, class) => return Ok(unread(class, "enumerations are not read")),
+        (OBJECT, class) => return Ok(Value::opaque(class, "enumerations are not read")),
         _ => {}
     }
     // MATLAB says the order of fields only where it is not that of the names.
@@ -373,7 +354,7 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
         if marks.empty {
             fields.iter_mut().flat_map(|(_, values)| values).for_each(without_elements);
         }
-        StructArray { shape: vec![1, 1], fields }
+        StructArray::one(fields)
     };
     Ok(match marks.decode {
         OLD_OBJECT => Value::Object(variables::Object { class: marks.class().to_owned(), records }),
@@ -434,6 +415,8 @@ fn within(path: &str, name: &str) -> String {
 
 #[cfg(test)]
 mod mat73_tests {
+    use std::path::Path;
+
     use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
     use super::*;
@@ -567,7 +550,7 @@ mod mat73_tests {
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
         // The directory of this file is cut off behind its version.
-        let read = Hdf5.read(&file("objects.mat"), Path::new("objects.mat"), &ReadingBudget::new(1 << 24)).unwrap();
+        let read = (HDF5.read)(&file("objects.mat"), Path::new("objects.mat"), &ReadingBudget::new(1 << 24)).unwrap();
         let Contents::Variables { variables, .. } = read else { panic!("variables") };
         assert_eq!((variables.len(), value(&variables, "before")), (2, number(1.0)));
         let sys = value(&variables, "sys");

@@ -2,10 +2,10 @@
 
 use hdf5_pure::{CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions};
 
-use crate::mat::{self, Entries, Subsystem};
+use crate::mat::{self, Subsystem};
 use crate::mat73::dataset::{Elements, NumberType, Order};
 use crate::mat73::{MatlabAttributes, Reader, damaged, fault};
-use crate::strides::count;
+use crate::strides::{Entries, count};
 use crate::variables::{Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
 /// The texts in the rows of an array of characters' numbers (UTF-16).
@@ -94,7 +94,7 @@ pub(super) fn empty(
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
             Value::Array(numbers(ElementKind::Integer))
         }
-        class => Value::Opaque { class: class.to_owned(), why: "it is empty".to_owned() },
+        class => Value::opaque(class, "it is empty"),
     })
 }
 
@@ -133,12 +133,9 @@ fn value(
     if let Datatype::String { size, padding, .. } = &member.datatype {
         let bytes = &bytes[..bytes.len().min(*size as usize)];
         budget.take(bytes.len() as u64, 1, path)?;
-        return Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec![fixed(bytes, padding)] }));
+        return Ok(Value::text(fixed(bytes, padding)));
     }
-    Ok(Value::Opaque {
-        class: "a field of a record".to_owned(),
-        why: "it is neither a number nor a text of fixed length".to_owned(),
-    })
+    Ok(Value::opaque("a field of a record", "it is neither a number nor a text of fixed length"))
 }
 
 // Matrices of which only the numbers other than zero are stored (`MATLAB_sparse`): by columns, compressed.
@@ -216,7 +213,7 @@ impl Objects {
         path: &str,
         budget: &ReadingBudget<'_>,
     ) -> Result<Value, VariableFault> {
-        let opaque = |why: &str| Ok(Value::Opaque { class: class.to_owned(), why: why.to_owned() });
+        let opaque = |why: &str| Ok(Value::opaque(class, why));
         match self {
             Self::References => Ok(Value::Array(reference)),
             Self::Unread(why) => opaque(why),

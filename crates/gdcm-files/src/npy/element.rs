@@ -2,16 +2,12 @@
 
 use serde_json::Value as Json;
 
-use crate::strides::{NumberClass, StoredNumber};
+use crate::strides::{NumberClass, StoredNumber, count};
 use crate::variables::{ReadingBudget, VariableFault};
 
-/// Why elements cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum ElementFault {
-    /// `NumPy` writes no such description.
-    Damaged(String),
-    /// `NumPy` does, this program does not read it.
-    Unsupported { what: String, remedy: &'static str },
+/// `NumPy` writes no such description.
+fn damaged(what: impl Into<String>) -> VariableFault {
+    VariableFault::damaged("", what, 8)
 }
 
 /// One element of an array: a `dtype.descr` of `NumPy`.
@@ -61,16 +57,16 @@ impl Element {
     }
 
     /// Reads the value of `descr`: a short text such as "<f8", or a list of fields.
-    pub(super) fn parse(descr: &Json) -> Result<Self, ElementFault> {
+    pub(super) fn parse(descr: &Json) -> Result<Self, VariableFault> {
         match descr {
             Json::String(code) => Self::parse_code(code),
             Json::Array(fields) => Self::parse_record(fields),
-            _ => Err(ElementFault::Damaged("the type of the elements is no text and no list".to_owned())),
+            _ => Err(damaged("the type of the elements is no text and no list")),
         }
     }
 
-    fn parse_code(code: &str) -> Result<Self, ElementFault> {
-        let unknown = || ElementFault::Damaged(format!("\"{}\" is no type of elements", code.escape_default()));
+    fn parse_code(code: &str) -> Result<Self, VariableFault> {
+        let unknown = || damaged(format!("\"{}\" is no type of elements", code.escape_default()));
         let (order, rest) = code.split_at_checked(1).ok_or_else(unknown)?;
         let big_endian = match order {
             "<" | "|" => false,
@@ -85,8 +81,7 @@ impl Element {
         let size: u32 = size.parse().map_err(|_| unknown())?;
         let size = size as usize;
         let number = |class, size| {
-            let refuse =
-                || ElementFault::Unsupported { what: format!("numbers of type {code}"), remedy: "save it as float64" };
+            let refuse = || VariableFault::unsupported("", format!("numbers of type {code}"), "save it as float64");
             StoredNumber::new(class, size, big_endian).ok_or_else(refuse)
         };
         Ok(match class {
@@ -102,12 +97,12 @@ impl Element {
         })
     }
 
-    fn parse_record(list: &[Json]) -> Result<Self, ElementFault> {
-        let too_large = || ElementFault::Damaged("a record is too large".to_owned());
+    fn parse_record(list: &[Json]) -> Result<Self, VariableFault> {
+        let too_large = || damaged("a record is too large");
         let (mut fields, mut offset) = (Vec::with_capacity(list.len()), 0usize);
         for entry in list {
             let field = Field::parse(entry, offset)?;
-            let count = crate::strides::count(&field.shape).ok_or_else(too_large)?;
+            let count = count(&field.shape).ok_or_else(too_large)?;
             let length = count.checked_mul(field.element.size()).ok_or_else(too_large)?;
             offset = offset.checked_add(length).ok_or_else(too_large)?;
             // Bytes that only fill up have no name.
@@ -120,18 +115,18 @@ impl Element {
 }
 
 /// The classes that are refused, with the way out.
-fn unread(class: &str, code: &str) -> Option<ElementFault> {
+fn unread(class: &str, code: &str) -> Option<VariableFault> {
     let (what, remedy) = match class {
         "O" => ("an array of Python objects".to_owned(), "save plain arrays, one for each name"),
         "M" | "m" => (format!("dates or times of type {code}"), "save them as float64, with the unit in the name"),
         _ => return None,
     };
-    Some(ElementFault::Unsupported { what, remedy })
+    Some(VariableFault::unsupported("", what, remedy))
 }
 
 impl Field {
-    fn parse(entry: &Json, offset: usize) -> Result<Self, ElementFault> {
-        let wrong = || ElementFault::Damaged("a field of the records has no name and type".to_owned());
+    fn parse(entry: &Json, offset: usize) -> Result<Self, VariableFault> {
+        let wrong = || damaged("a field of the records has no name and type");
         let Json::Array(parts) = entry else { return Err(wrong()) };
         let [name, descr, shape @ ..] = parts.as_slice() else { return Err(wrong()) };
         let name = match name {
@@ -178,8 +173,7 @@ impl Header {
     /// Reads the header; `name` is what errors call the array.
     pub(super) fn parse(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let (text, length) = text(bytes, name)?;
-        let damaged =
-            |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
+        let damaged = |what: &str| VariableFault::damaged(name, what, 8);
         // As JSON, and as a tree of its values.
         budget.take(text.len() as u64, 40, name)?;
         let header = json_of(&text).map_err(damaged)?;
@@ -190,12 +184,7 @@ impl Header {
         };
         let column_major = order.as_bool().ok_or_else(|| damaged("fortran_order is neither True nor False"))?;
         let shape = sides(shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
-        let element = Element::parse(descr).map_err(|fault| match fault {
-            ElementFault::Damaged(what) => damaged(&what),
-            ElementFault::Unsupported { what, remedy } => {
-                VariableFault::Unsupported { variable: name.to_owned(), what, remedy: remedy.to_owned() }
-            }
-        })?;
+        let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
         Ok(Self { element, column_major, shape, length })
     }
 }
@@ -203,18 +192,16 @@ impl Header {
 /// The header's text, and where it ends.
 fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
     if !bytes.starts_with(MAGIC) {
-        let found = if bytes.is_empty() { "nothing" } else { "other bytes" };
-        return Err(VariableFault::Format { expected: "an array of NumPy (.npy)", found: found.to_owned() });
+        return Err(VariableFault::other_bytes("an array of NumPy (.npy)", bytes));
     }
-    let cut_off = || VariableFault::CutOff { variable: name.to_owned(), offset: bytes.len() as u64 };
+    let cut_off = || VariableFault::cut_off(name, bytes.len());
     let &version = bytes.get(6).ok_or_else(cut_off)?;
     let from = match version {
         1 => 10,
         2 | 3 => 12,
         _ => {
             let what = format!("version {version} of the .npy format");
-            let remedy = "save it with numpy.save of a plain array".to_owned();
-            return Err(VariableFault::Unsupported { variable: name.to_owned(), what, remedy });
+            return Err(VariableFault::unsupported(name, what, "save it with numpy.save of a plain array"));
         }
     };
     let digits = bytes.get(8..from).ok_or_else(cut_off)?;
@@ -223,11 +210,8 @@ fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
     let text = bytes.get(from..end).ok_or_else(cut_off)?;
     // Versions 1 and 2 are in Latin-1, whose bytes are the first characters of Unicode; 3 is in UTF-8.
     let text = match version {
-        3 => String::from_utf8(text.to_vec()).map_err(|_| VariableFault::Damaged {
-            variable: name.to_owned(),
-            what: "the header is not UTF-8".to_owned(),
-            offset: from as u64,
-        })?,
+        3 => String::from_utf8(text.to_vec())
+            .map_err(|_| VariableFault::damaged(name, "the header is not UTF-8", from as u64))?,
         _ => text.iter().copied().map(char::from).collect(),
     };
     Ok((text, end))
@@ -287,7 +271,7 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
 mod element_tests {
     use super::*;
 
-    fn parse(descr: &str) -> Result<Element, ElementFault> {
+    fn parse(descr: &str) -> Result<Element, VariableFault> {
         Element::parse(&json_of(descr).unwrap())
     }
 
@@ -304,7 +288,7 @@ mod element_tests {
     #[test]
     fn objects_dates_and_long_floats_come_with_a_way_out() {
         for descr in ["'|O'", "'<M8[ns]'", "'<f16'", "'<c32'", "'<i3'"] {
-            assert!(matches!(parse(descr), Err(ElementFault::Unsupported { .. })), "{descr}");
+            assert!(matches!(parse(descr), Err(VariableFault::Unsupported { .. })), "{descr}");
         }
     }
 
@@ -313,10 +297,10 @@ mod element_tests {
         for descr in
             ["''", "'f8'", "'<'", "'<f'", "'<f-8'", "'<x8'", "'\u{e9}f8'", "'<\u{e9}8'", "3", "[('a',)]", "[3]"]
         {
-            assert!(matches!(parse(descr), Err(ElementFault::Damaged(_))), "{descr}");
+            assert!(matches!(parse(descr), Err(VariableFault::Damaged { .. })), "{descr}");
         }
         let huge = "[('a', '<f8', (9223372036854775807, 3))]";
-        assert!(matches!(parse(huge), Err(ElementFault::Damaged(_))));
+        assert!(matches!(parse(huge), Err(VariableFault::Damaged { .. })));
     }
 }
 

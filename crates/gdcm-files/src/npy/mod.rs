@@ -8,41 +8,28 @@ mod element;
 
 use std::collections::HashSet;
 use std::io::Write;
-use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 
-use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
 use crate::npy::element::{Element, Field, Header, MAGIC};
-use crate::strides::{Places, StoredNumber, count};
+use crate::strides::{Places, StoredNumber, count, matrix_shape};
 use crate::variables::{
     Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
 /// One array of NumPy.
-pub(crate) struct Npy;
-
-impl Importer for Npy {
-    fn name(&self) -> &'static str {
-        "an array of NumPy"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["npy"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(MAGIC)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const NPY: Importer = Importer {
+    name: "an array of NumPy",
+    endings: &["npy"],
+    recognises: |bytes, _| bytes.starts_with(MAGIC),
+    read: |bytes, path, budget| {
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
         Contents::row_major(read_npy(bytes, name, budget), path)
-    }
-}
+    },
+};
 
 // Files of one array.
 
@@ -52,22 +39,23 @@ impl Importer for Npy {
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
 pub fn read_npy(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name, budget)?;
-    let damaged = |what: &str| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 };
-    let too_many = || damaged("the shape has more elements than can be counted");
-    let length =
-        count(&header.shape).and_then(|count| count.checked_mul(header.element.size())).ok_or_else(too_many)?;
+    let length = count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
+    let length = length.ok_or_else(|| too_many(name))?;
     let data = &bytes[header.length..];
     if data.len() < length {
-        return Err(VariableFault::CutOff { variable: name.to_owned(), offset: bytes.len() as u64 });
+        return Err(VariableFault::cut_off(name, bytes.len()));
     }
     if data.len() > length {
-        let what = "something behind the array".to_owned();
-        let remedy = "save one array in each .npy file, several with numpy.savez".to_owned();
-        return Err(VariableFault::Unsupported { variable: name.to_owned(), what, remedy });
+        let remedy = "save one array in each .npy file, several with numpy.savez";
+        return Err(VariableFault::unsupported(name, "something behind the array", remedy));
     }
     let stored =
         StoredArray { element: &header.element, shape: &header.shape, column_major: header.column_major, data };
     Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, budget)? }])
+}
+
+fn too_many(name: &str) -> VariableFault {
+    VariableFault::damaged(name, "the shape has more elements than can be counted", 8)
 }
 
 /// The elements of an array as they stand in a file.
@@ -110,8 +98,7 @@ impl StoredArray<'_> {
 
     fn places(&self, name: &str) -> Result<Places, VariableFault> {
         let places = if self.column_major { Places::column_major(self.shape) } else { Places::row_major(self.shape) };
-        let what = "the shape has more elements than can be counted";
-        places.ok_or_else(|| VariableFault::Damaged { variable: name.to_owned(), what: what.to_owned(), offset: 8 })
+        places.ok_or_else(|| too_many(name))
     }
 
     /// The bytes of one element.
@@ -167,15 +154,6 @@ impl StoredArray<'_> {
     }
 }
 
-/// The shape with at least two dimensions: numbers alone are 1 x 1, lists are rows.
-fn matrix_shape(shape: &[usize]) -> Vec<usize> {
-    match *shape {
-        [] => vec![1, 1],
-        [columns] => vec![1, columns],
-        _ => shape.to_vec(),
-    }
-}
-
 // Archives written for `NumPy`.
 
 /// The elements begin at a multiple of this, as `numpy.lib.format` asks for.
@@ -208,8 +186,8 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
 }
 
 fn refused(name: &str, what: String) -> VariableFault {
-    let remedy = "write arrays and texts under short names".to_owned();
-    VariableFault::Unsupported { variable: name.to_owned(), what: format!("{what} cannot be written, so it"), remedy }
+    let remedy = "write arrays and texts under short names";
+    VariableFault::unsupported(name, format!("{what} cannot be written, so it"), remedy)
 }
 
 fn entry(archive: &mut ZipArchiveWriter<&mut Vec<u8>>, name: &str, array: &[u8]) -> Result<(), rawzip::Error> {

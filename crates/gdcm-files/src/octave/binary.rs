@@ -1,42 +1,41 @@
 //! GNU Octave's `save -binary`: behind "Octave-1-L" or "Octave-1-B" each value with the lengths of its name and of its parts.
 
-use std::path::Path;
-
-use super::{Element, Filled, Form, Parts, Sides, Stored, value};
-use crate::file_error::FileError;
+use super::{Element, Form, Parts, Sides, rows, texts_in_pages, value};
 use crate::importer::{Contents, Importer};
-use crate::strides::{NumberClass, StoredNumber};
+use crate::strides::{Entries, NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
-
-/// Files of `save -binary`.
-pub(crate) struct OctaveBinary;
 
 /// What they begin with, before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
 /// The byte order and the format of floats behind it.
 const HEADER: usize = MAGIC.len() + 2;
+/// How floats are stored, by the byte before them.
+const FLOATS: [(NumberClass, usize); 10] = [
+    (NumberClass::Unsigned, 1),
+    (NumberClass::Unsigned, 2),
+    (NumberClass::Unsigned, 4),
+    (NumberClass::Signed, 1),
+    (NumberClass::Signed, 2),
+    (NumberClass::Signed, 4),
+    (NumberClass::Float, 4),
+    (NumberClass::Float, 8),
+    (NumberClass::Unsigned, 8),
+    (NumberClass::Signed, 8),
+];
 /// What stands before the name of a type.
 const NAMED_TYPE: u8 = 0xff;
 
-impl Importer for OctaveBinary {
-    fn name(&self) -> &'static str {
-        "a file of GNU Octave, as it writes with -binary"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["bin", "mat"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
-        bytes.starts_with(MAGIC)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+/// Files of `save -binary`.
+pub(crate) const OCTAVE_BINARY: Importer = Importer {
+    name: "a file of GNU Octave, as it writes with -binary",
+    endings: &["bin", "mat"],
+    recognises: |bytes, _| bytes.starts_with(MAGIC),
+    read: |bytes, path, budget| {
         let big_endian = bytes.get(MAGIC.len()) == Some(&b'B');
         let mut bytes = Bytes { bytes, at: HEADER, big_endian, budget };
         Contents::variables(variables(&mut bytes), path)
-    }
-}
+    },
+};
 
 fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut variables = Vec::new();
@@ -47,7 +46,7 @@ fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
             // It does not say how long it is: what stands behind it is not found.
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
                 let why = format!("neither it nor what stands behind it can be read; {remedy}");
-                variables.push(Variable { name, value: Value::Opaque { class: what, why } });
+                variables.push(Variable { name, value: Value::opaque(what, why) });
                 break;
             }
             value => variables.push(Variable { name, value: value? }),
@@ -67,10 +66,7 @@ struct Bytes<'b> {
 impl<'b> Bytes<'b> {
     fn next(&mut self, count: usize, variable: &str) -> Result<&'b [u8], VariableFault> {
         let end = self.at.saturating_add(count);
-        let found = self
-            .bytes
-            .get(self.at..end)
-            .ok_or_else(|| VariableFault::CutOff { variable: variable.to_owned(), offset: self.bytes.len() as u64 })?;
+        let found = self.bytes.get(self.at..end).ok_or_else(|| VariableFault::cut_off(variable, self.bytes.len()))?;
         self.at = end;
         Ok(found)
     }
@@ -92,26 +88,13 @@ impl<'b> Bytes<'b> {
 
     /// How numbers are stored: floats may be stored as whole numbers, or as shorter ones, where nothing is lost.
     fn stored(&mut self, element: Element, variable: &str) -> Result<StoredNumber, VariableFault> {
-        use NumberClass::{Float, Logical, Signed, Unsigned};
-        let (class, size) = match element.stored {
-            Stored::Logical => (Logical, 1),
-            Stored::Integer { signed, size } => (if signed { Signed } else { Unsigned }, size),
-            Stored::Float => match self.next(1, variable)?[0] {
-                0 => (Unsigned, 1),
-                1 => (Unsigned, 2),
-                2 => (Unsigned, 4),
-                3 => (Signed, 1),
-                4 => (Signed, 2),
-                5 => (Signed, 4),
-                6 => (Float, 4),
-                7 => (Float, 8),
-                8 => (Unsigned, 8),
-                9 => (Signed, 8),
-                _ => return Err(self.wrong(variable, "numbers are of an unknown kind")),
-            },
+        let unknown = |bytes: &Self| bytes.wrong(variable, "numbers are of an unknown kind");
+        let stored = match element.stored {
+            None => FLOATS.get(usize::from(self.next(1, variable)?[0])).copied(),
+            stored => stored,
         };
-        StoredNumber::new(class, size, self.big_endian)
-            .ok_or_else(|| self.wrong(variable, "numbers are of an unknown kind"))
+        let (class, size) = stored.ok_or_else(|| unknown(self))?;
+        StoredNumber::new(class, size, self.big_endian).ok_or_else(|| unknown(self))
     }
 }
 
@@ -154,43 +137,23 @@ impl Parts for Bytes<'_> {
         Ok(bytes.chunks(stored.size()).map(|number| stored.decode(number)).collect())
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<Filled, VariableFault> {
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
         let shape = self.sides(variable)?.shape;
-        let (rows, columns) = (shape[0], shape[1]);
         let count = self.length(variable)?;
-        let starts = (0..=columns).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
-        let indices = (0..count).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
-        if starts.last() != Some(&count) {
-            return Err(self.wrong(variable, "the sparse matrix contradicts itself"));
-        }
-        let mut places = Vec::new();
-        for (column, bounds) in starts.windows(2).enumerate() {
-            let rows_of = indices.get(bounds[0]..bounds[1]);
-            for &row in rows_of.ok_or_else(|| self.wrong(variable, "the sparse matrix contradicts itself"))? {
-                if row >= rows {
-                    return Err(self.wrong(variable, "a number lies outside the matrix"));
-                }
-                places.push(column.saturating_mul(rows).saturating_add(row));
-            }
-        }
-        Ok(Filled { shape, places, numbers: self.numbers(element, count, variable)? })
+        let starts = (0..=shape[1]).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
+        let rows = (0..count).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
+        let numbers = element.parts(self.numbers(element, count, variable)?);
+        self.budget.take(count as u64, 8, variable)?;
+        let stored = Entries::of_columns([shape[0], shape[1]], element.kind(), rows, &starts, numbers);
+        stored.ok_or_else(|| self.wrong(variable, "the sparse matrix contradicts itself"))
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
         let shape = self.sides(variable)?.shape;
-        let &[rows, columns] = shape.as_slice() else {
-            let what = "an array of texts of more than two dimensions".to_owned();
-            let remedy = "save it as a cell array".to_owned();
-            return Err(VariableFault::Unsupported { variable: variable.to_owned(), what, remedy });
-        };
-        let letters = self.next(rows.saturating_mul(columns), variable)?;
-        if letters.is_empty() {
-            return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
-        }
-        self.budget.take(rows as u64, size_of::<String>() as u64, variable)?;
-        let row = |row: usize| letters.iter().skip(row).step_by(rows).copied().collect::<Vec<u8>>();
-        let texts = (0..rows).map(|of| String::from_utf8_lossy(&row(of)).into_owned()).collect();
-        Ok(TextArray { shape: vec![rows, 1], texts })
+        let &[height, columns] = shape.as_slice() else { return Err(texts_in_pages(variable)) };
+        let letters = self.next(height.saturating_mul(columns), variable)?;
+        self.budget.take(if letters.is_empty() { 0 } else { height as u64 }, size_of::<String>() as u64, variable)?;
+        Ok(rows(letters, height))
     }
 
     fn members(&mut self, _: Form, variable: &str) -> Result<usize, VariableFault> {
@@ -202,6 +165,6 @@ impl Parts for Bytes<'_> {
     }
 
     fn wrong(&self, variable: &str, what: &str) -> VariableFault {
-        VariableFault::Damaged { variable: variable.to_owned(), what: what.to_owned(), offset: self.at as u64 }
+        VariableFault::damaged(variable, what, self.at as u64)
     }
 }

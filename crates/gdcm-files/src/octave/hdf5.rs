@@ -3,10 +3,10 @@
 //! The container is read as any HDF5 file, which makes structs of groups; here they become the values that they stand for. Arrays lie
 //! column by column, so that their sides stand the other way round.
 
-use super::Form;
-use crate::strides::Places;
+use super::{Form, rows};
+use crate::strides::{Entries, Places, count};
 use crate::variables::{
-    Array, CellArray, Object, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
 /// The values of a file that Octave wrote; those of another as they are.
@@ -37,7 +37,7 @@ fn decoded(group: &Value, variable: &str, budget: &ReadingBudget<'_>) -> Result<
     };
     budget.take(1, size_of::<Value>() as u64, variable)?;
     Ok(match (Form::of(kind), value) {
-        (Some(Form::Text), Value::Array(codes)) => Value::Text(rows(&turned(codes, variable, budget)?)),
+        (Some(Form::Text), Value::Array(codes)) => Value::Text(texts(&turned(codes, variable, budget)?)),
         (Some(Form::Range), Value::Struct(parts)) => Value::Array(range(parts, variable, budget)?),
         (Some(Form::Cell), Value::Struct(parts)) => Value::Cell(cell(parts, variable, budget)?),
         (Some(Form::Cell), Value::Array(empty)) => {
@@ -60,12 +60,12 @@ fn decoded(group: &Value, variable: &str, budget: &ReadingBudget<'_>) -> Result<
         (Some(Form::Scalar(_) | Form::Matrix(_) | Form::Diagonal(_)), Value::Array(array)) => {
             Value::Array(turned(array, variable, budget)?)
         }
-        _ => Value::Opaque { class: format!("a {kind} of GNU Octave"), why: "save it with -v7".to_owned() },
+        _ => Value::opaque(format!("a {kind} of GNU Octave"), "save it with -v7"),
     })
 }
 
 fn damaged(variable: &str, what: &str) -> VariableFault {
-    VariableFault::Damaged { variable: variable.to_owned(), what: what.to_owned(), offset: 0 }
+    VariableFault::damaged(variable, what, 0)
 }
 
 /// The array with its sides the other way round.
@@ -86,15 +86,9 @@ fn turned(array: &Array, variable: &str, budget: &ReadingBudget<'_>) -> Result<A
 }
 
 /// Texts in the rows of an array of bytes.
-fn rows(codes: &Array) -> TextArray {
-    let height = codes.shape.first().copied().unwrap_or(0);
-    if codes.is_empty() {
-        return TextArray { shape: vec![1, 1], texts: vec![String::new()] };
-    }
-    let row =
-        |row: usize| codes.re.iter().skip(row).step_by(height).map(|code| *code as i64 as u8).collect::<Vec<u8>>();
-    let texts = (0..height).map(|of| String::from_utf8_lossy(&row(of)).into_owned()).collect();
-    TextArray { shape: vec![height, 1], texts }
+fn texts(codes: &Array) -> TextArray {
+    let letters: Vec<u8> = codes.re.iter().map(|code| *code as i64 as u8).collect();
+    rows(&letters, codes.shape.first().copied().unwrap_or(0))
 }
 
 fn number(parts: &StructArray, name: &str) -> Option<f64> {
@@ -123,7 +117,7 @@ fn cell(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Resu
     let values: Vec<Value> = values
         .map(|(index, value)| decoded(value, &format!("{variable}{{{}}}", index + 1), budget))
         .collect::<Result<_, _>>()?;
-    if crate::strides::count(&shape) != Some(values.len()) {
+    if count(&shape) != Some(values.len()) {
         return Err(damaged(variable, "a cell array has not as many values as its sides say"));
     }
     Ok(CellArray { shape, values })
@@ -136,7 +130,7 @@ fn records(
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<StructArray, VariableFault> {
-    let mut records = StructArray { shape: vec![1, 1], fields: Vec::new() };
+    let mut records = StructArray::one(Vec::new());
     for (name, values) in &parts.fields {
         let inner = format!("{variable}.{name}");
         let value = values.first().map(|value| decoded(value, &inner, budget)).transpose()?;
@@ -159,16 +153,9 @@ fn sparse(parts: &StructArray, variable: &str, budget: &ReadingBudget<'_>) -> Re
     let wrong = || damaged(variable, "the sparse matrix contradicts itself");
     let side = |name: &str| number(parts, name).filter(|side| *side >= 0.0).map(|side| side as usize).ok_or_else(wrong);
     let (rows, columns) = (side("nr")?, side("nc")?);
-    let count = crate::strides::count(&[rows, columns]).ok_or_else(wrong)?;
-    budget.take(count as u64, 8, variable)?;
-    let (starts, indices, data) = (numbers(parts, "cidx"), numbers(parts, "ridx"), numbers(parts, "data"));
-    let mut values = vec![0.0; count];
-    for (column, bounds) in starts.windows(2).enumerate() {
-        for place in bounds[0] as usize..bounds[1] as usize {
-            let row = *indices.get(place).ok_or_else(wrong)? as usize;
-            let into = values.get_mut(column * rows + row).filter(|_| row < rows).ok_or_else(wrong)?;
-            *into = *data.get(place).ok_or_else(wrong)?;
-        }
-    }
-    Ok(Array::matrix(rows, columns, values))
+    let whole = |name: &str| numbers(parts, name).iter().map(|number| *number as usize).collect::<Vec<usize>>();
+    let (starts, indices, data) = (whole("cidx"), whole("ridx"), numbers(parts, "data").to_vec());
+    budget.take((starts.len() + 2 * indices.len() + data.len()) as u64, 8, variable)?;
+    let stored = Entries::of_columns([rows, columns], ElementKind::Float, indices, &starts, (data, None));
+    stored.ok_or_else(wrong)?.filled(variable, budget, wrong)
 }

@@ -1,42 +1,32 @@
 //! GNU Octave's `save -text`: lines `# name: A`, `# type: matrix`, `# rows: 8`, and numbers.
 
-use std::path::Path;
-
-use super::{Element, Filled, Form, Parts, Sides, value};
+use super::{Element, Form, Parts, Sides, texts_in_pages, value};
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
+use crate::strides::Entries;
 use crate::text::decode;
 use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
-
-/// Files of `save -text`.
-pub(crate) struct OctaveText;
 
 /// How far into a file its first variable begins \[bytes\].
 const HEAD: usize = 2000;
 
-impl Importer for OctaveText {
-    fn name(&self) -> &'static str {
-        "a file of GNU Octave, as it writes with -text"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["txt", "mat", "dat"]
-    }
-
-    fn recognises(&self, bytes: &[u8], _: &str) -> bool {
+/// Files of `save -text`.
+pub(crate) const OCTAVE_TEXT: Importer = Importer {
+    name: "a file of GNU Octave, as it writes with -text",
+    endings: &["txt", "mat", "dat"],
+    recognises: |bytes, _| {
         let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
         let mut lines = head.lines().map(str::trim_end).skip_while(|line| !line.starts_with("# name: "));
         let before = head.lines().take_while(|line| !line.starts_with("# name: "));
         lines.nth(1).is_some_and(|line| line.starts_with("# type: "))
             && before.into_iter().all(|line| line.is_empty() || line.starts_with('#'))
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+    },
+    read: |bytes, path, budget| {
         let wrong = |fault| FileError::variables(path, fault);
         let text = decode(bytes, budget).map_err(wrong)?;
         Contents::variables(variables(&text, budget), path)
-    }
-}
+    },
+};
 
 /// The variables of a text.
 fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
@@ -47,7 +37,7 @@ fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, Va
         let (name, kind) = lines.member("")?;
         let value = match value(&mut lines, &kind, &name, 0) {
             // The others can be read all the same: a name stands at the beginning of a line only where a value begins.
-            Err(VariableFault::Unsupported { what, remedy, .. }) => Value::Opaque { class: what, why: remedy },
+            Err(VariableFault::Unsupported { what, remedy, .. }) => Value::opaque(what, remedy),
             value => value?,
         };
         variables.push(Variable { name, value });
@@ -139,7 +129,7 @@ impl<'t> Lines<'t> {
     }
 
     fn cut_off(&self, variable: &str) -> VariableFault {
-        VariableFault::CutOff { variable: variable.to_owned(), offset: self.text.len() as u64 }
+        VariableFault::cut_off(variable, self.text.len())
     }
 }
 
@@ -185,34 +175,34 @@ impl Parts for Lines<'_> {
         Ok(numbers)
     }
 
-    fn sparse(&mut self, element: Element, variable: &str) -> Result<Filled, VariableFault> {
+    fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
         let count = self.whole("nnz", variable)?;
-        let shape = vec![self.whole("rows", variable)?, self.whole("columns", variable)?];
-        let (mut places, mut numbers) = (Vec::new(), Vec::new());
+        let shape = [self.whole("rows", variable)?, self.whole("columns", variable)?];
+        let (mut rows, mut columns, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..count {
             let (row, column) = (self.index(variable)?, self.index(variable)?);
             let (row, column) = (row.wrapping_sub(1), column.wrapping_sub(1));
             if row >= shape[0] || column >= shape[1] {
                 return Err(self.wrong(variable, "a number lies outside the matrix"));
             }
-            places.push(column.saturating_mul(shape[0]).saturating_add(row));
+            rows.push(row);
+            columns.push(column);
             numbers.extend(self.numbers(element, 1, variable)?);
         }
-        Ok(Filled { shape, places, numbers })
+        let (re, im) = element.parts(numbers);
+        Ok(Entries { shape, kind: element.kind(), rows, columns, re, im })
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
         if !self.has_key("elements") {
-            let what = "an array of texts of more than two dimensions".to_owned();
-            let remedy = "save it as a cell array".to_owned();
-            return Err(VariableFault::Unsupported { variable: variable.to_owned(), what, remedy });
+            return Err(texts_in_pages(variable));
         }
         let count = self.whole("elements", variable)?;
         if count == 0 {
             if self.has_key("length") {
                 self.line();
             }
-            return Ok(TextArray { shape: vec![1, 1], texts: vec![String::new()] });
+            return Ok(TextArray::one(""));
         }
         let mut texts = Vec::new();
         for _ in 0..count {
@@ -248,6 +238,6 @@ impl Parts for Lines<'_> {
     fn wrong(&self, variable: &str, what: &str) -> VariableFault {
         let read = &self.text.as_bytes()[..self.at.saturating_sub(1).min(self.text.len())];
         let line = 1 + read.iter().filter(|byte| **byte == b'\n').count();
-        VariableFault::Line { variable: variable.to_owned(), line, what: what.to_owned() }
+        VariableFault::line(variable, line, what)
     }
 }

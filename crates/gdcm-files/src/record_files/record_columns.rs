@@ -153,6 +153,15 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
     step.or_else(|| rate().map(|rate| 1.0 / rate)).filter(|step| step.is_finite())
 }
 
+/// Columns of one name, numbered where there are several.
+fn side_by_side(name: &str, values: Vec<Vec<f64>>) -> impl Iterator<Item = RecordColumn> + use<> {
+    let (name, is_one) = (name.to_owned(), values.len() == 1);
+    values.into_iter().enumerate().map(move |(index, values)| {
+        let name = if is_one { name.clone() } else { format!("{name}_{}", index + 1) };
+        RecordColumn::new(name, values)
+    })
+}
+
 /// Names, units and the side of the columns of one field.
 struct Labels {
     names: Option<Vec<String>>,
@@ -189,14 +198,10 @@ impl Labels {
 
     fn columns(self, field: &str, values: Vec<Vec<f64>>) -> impl Iterator<Item = RecordColumn> {
         let Self { names, units, side, .. } = self;
-        let is_one = values.len() == 1;
-        let field = field.to_owned();
-        values.into_iter().enumerate().map(move |(index, values)| {
+        side_by_side(field, values).enumerate().map(move |(index, column)| {
             let label = names.as_ref().map(|names| label_of(&names[index])).unwrap_or_default();
-            let numbered = || if is_one { field.clone() } else { format!("{field}_{}", index + 1) };
             let unit = units.as_ref().map(|units| units[index].clone()).filter(|unit| !unit.is_empty());
-            let unit = unit.or(label.unit);
-            RecordColumn { unit, side, ..RecordColumn::new(label.name.unwrap_or_else(numbered), values) }
+            RecordColumn { name: label.name.unwrap_or(column.name), unit: unit.or(label.unit), side, ..column }
         })
     }
 }
@@ -217,11 +222,8 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
         let label = signal.get(&["label"]).and_then(texts_of).and_then(|texts| texts.into_iter().next());
         let label = label.filter(|label| !label.is_empty()).unwrap_or_else(|| format!("signal {}", index + 1));
         let label = label_of(&label);
-        let (name, is_one) = (label.name.unwrap_or_default(), samples.values.len() == 1);
-        columns.extend(samples.values.into_iter().enumerate().map(|(index, values)| {
-            let name = if is_one { name.clone() } else { format!("{name}_{}", index + 1) };
-            RecordColumn { unit: label.unit.clone(), ..RecordColumn::new(name, values) }
-        }));
+        let of_signal = side_by_side(&label.name.unwrap_or_default(), samples.values);
+        columns.extend(of_signal.map(|column| RecordColumn { unit: label.unit.clone(), ..column }));
     }
     let found = columns.len() > 1 && time.rows >= FEWEST_TIMED;
     found.then(|| Columns::new(variable.to_owned(), columns))
@@ -288,12 +290,7 @@ fn experiment(record: &Record<'_>, output: &Value, index: usize, variable: Strin
     let instants = part_of(record, &["SamplingInstants"], index).and_then(|value| samples_of(value, rows));
     if let Some(stamps) = instants.filter(|stamps| Some(stamps.rows) == rows && stamps.values.len() == 1) {
         let unit = texts(record, &["TimeUnit"]).and_then(|unit| unit.into_iter().next());
-        columns.extend(
-            stamps
-                .values
-                .into_iter()
-                .map(|values| RecordColumn { unit: unit.clone(), ..RecordColumn::new("time", values) }),
-        );
+        columns.extend(side_by_side("time", stamps.values).map(|column| RecordColumn { unit: unit.clone(), ..column }));
     }
     for side in [&IDDATA_INPUTS, &IDDATA_OUTPUTS] {
         columns.extend(side_columns(record, side, index, rows));
@@ -401,11 +398,8 @@ fn columns(data: &[Value], names: &[String], units: Option<&[String]>) -> Vec<Re
             continue;
         };
         let unit = units.and_then(|units| units.get(index)).filter(|unit| !unit.is_empty());
-        let is_one = samples.values.len() == 1;
-        columns.extend(samples.values.into_iter().enumerate().map(|(part, values)| {
-            let name = if is_one { name.clone() } else { format!("{name}_{}", part + 1) };
-            RecordColumn { unit: unit.cloned(), ..RecordColumn::new(name, values) }
-        }));
+        let parts = side_by_side(name, samples.values);
+        columns.extend(parts.map(|column| RecordColumn { unit: unit.cloned(), ..column }));
     }
     columns
 }

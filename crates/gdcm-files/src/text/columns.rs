@@ -47,7 +47,7 @@ impl TextTable {
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!("{} headings for {} columns", headings.len(), self.columns.len());
-            return Err(VariableFault::Format { expected: "one heading for each column", found });
+            return Err(VariableFault::format("one heading for each column", found));
         }
         let (names, units) = headings.iter().map(|heading| name_and_unit(heading)).unzip();
         (self.names, self.units) = (Some(names), units);
@@ -74,11 +74,7 @@ fn no_numbers(text: &str) -> VariableFault {
         "" => "an empty file".to_owned(),
         start => format!("no line that consists of numbers (it begins with \"{start}\")"),
     };
-    VariableFault::Format { expected: EXPECTED, found }
-}
-
-pub(super) fn line_fault(line: usize, what: String) -> VariableFault {
-    VariableFault::Line { variable: String::new(), line, what }
+    VariableFault::format(EXPECTED, found)
 }
 
 /// A table as far as it is read.
@@ -170,7 +166,7 @@ impl<'m> Reading<'m> {
                 return Err(self.ragged(number, line));
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
-                return Err(line_fault(number, self.no_number(index, &cell, line)));
+                return Err(VariableFault::line("", number, self.no_number(index, &cell, line)));
             };
             ends_empty = cell.trim().is_empty();
             column.push(value);
@@ -207,7 +203,11 @@ impl<'m> Reading<'m> {
         let found: usize = if self.layout.trailing && ends_empty { found - 1 } else { found };
         let separator = self.layout.separator.words();
         let remedy = "complete the line, or split the file where the columns change";
-        line_fault(number, format!("{found} columns, where the table has {expected} (between {separator}); {remedy}"))
+        VariableFault::line(
+            "",
+            number,
+            format!("{found} columns, where the table has {expected} (between {separator}); {remedy}"),
+        )
     }
 
     fn finish(mut self, text: &str) -> Result<TextTable, VariableFault> {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity, ResponseLabel};
-use crate::text::columns::{TextTable, line_fault};
+use crate::text::columns::TextTable;
 use crate::variables::VariableFault;
 
 /// What the columns of a table mean.
@@ -135,7 +135,7 @@ impl FrequencyColumns {
                 before = value;
                 continue;
             };
-            return Err(line_fault(line, format!("the frequency in {place} {what}")));
+            return Err(VariableFault::line("", line, format!("the frequency in {place} {what}")));
         }
         Ok(column.iter().map(|value| factor * value).collect())
     }
@@ -147,7 +147,7 @@ fn unrecognised(found: &str) -> Unrecognised {
         "a table with {found} among its columns; say what each column holds in its first line, by --headings, or under \
          \"headings\" in the rules: \"omega [rad/s]\", \"mag Q/LON [dB]\", \"phase Q/LON [deg]\""
     );
-    let fault = VariableFault::Format { expected: "a frequency response in columns", found };
+    let fault = VariableFault::format("a frequency response in columns", found);
     Unrecognised { fault, unsaid: Vec::new() }
 }
 
@@ -351,12 +351,12 @@ fn points(table: &TextTable, response: &RecognisedResponse, omega: &[f64]) -> Re
         if let Some((_, index)) = values.iter().find(|(value, _)| !value.is_finite()) {
             let place = place(table, *index);
             let what = format!("{place} has no finite number; complete it or empty its other half too");
-            return Err(line_fault(line, what));
+            return Err(VariableFault::line("", line, what));
         }
         let (re, im) = response.parts.complex(table, row);
         if !(re.is_finite() && im.is_finite()) {
             let what = format!("{} is too large for a magnitude; is it in dB?", place(table, first));
-            return Err(line_fault(line, what));
+            return Err(VariableFault::line("", line, what));
         }
         points.omega.push(omega);
         points.re.push(re);

@@ -5,13 +5,13 @@
 
 use std::collections::HashMap;
 
+use crate::strides::first_index_fastest;
+use crate::text::matlab_scanner::{MOST_NESTED, Position, Scanner, ValueError, begins_word, is_of_word, refused};
 use crate::text::separator::{excerpt, refuse_binary};
 use crate::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
-/// Values within values that are followed; nobody writes more, and each takes room on the stack of the program.
-const MOST_NESTED: usize = 64;
 /// How to come by what is not read here.
 const REMEDY: &str = "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
 /// Words that begin what may be run never, once or often.
@@ -37,9 +37,8 @@ pub struct Statements {
 /// Reads variables from MATLAB or Octave statements.
 pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, VariableFault> {
     refuse_binary(text, "MATLAB statements")?;
-    let scanner = Scanner { text, at: 0, line: 1, line_start: 0 };
     let mut reading = Reading {
-        scanner,
+        scanner: Scanner::new(text),
         budget,
         read: Statements { variables: Vec::new(), notes: Vec::new() },
         places: HashMap::new(),
@@ -50,256 +49,6 @@ pub fn read_literals(text: &str, budget: &ReadingBudget) -> Result<Statements, V
         reading.statement()?;
     }
     Ok(reading.read)
-}
-
-/// Why a value was not read.
-enum ValueError {
-    /// It is not understood; others can be.
-    NotUnderstood {
-        what: String,
-        /// Where it stands; none for the beginning of the value.
-        at: Option<Position>,
-    },
-    /// Reading ends.
-    Fault(VariableFault),
-}
-
-impl From<VariableFault> for ValueError {
-    fn from(fault: VariableFault) -> Self {
-        Self::Fault(fault)
-    }
-}
-
-fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
-    Err(ValueError::NotUnderstood { what: what.into(), at: Some(at) })
-}
-
-/// A line and a column, both from 1.
-#[derive(Clone, Copy)]
-struct Position {
-    line: usize,
-    column: usize,
-}
-
-/// A text and how far it is read.
-#[derive(Clone)]
-struct Scanner<'t> {
-    text: &'t str,
-    at: usize,
-    line: usize,
-    line_start: usize,
-}
-
-impl<'t> Scanner<'t> {
-    fn rest(&self) -> &'t str {
-        &self.text[self.at..]
-    }
-
-    fn peek(&self) -> Option<char> {
-        self.rest().chars().next()
-    }
-
-    fn take(&mut self, sign: &str) -> bool {
-        let is_next = self.rest().starts_with(sign);
-        self.at += if is_next { sign.len() } else { 0 };
-        is_next
-    }
-
-    /// The place at hand; in a line longer than anybody counts in, its column is counted in bytes.
-    fn position(&self) -> Position {
-        let before = &self.text[self.line_start..self.at];
-        Position {
-            line: self.line,
-            column: 1 + if before.len() > 2000 { before.len() } else { before.chars().count() },
-        }
-    }
-
-    fn new_line(&mut self) {
-        self.at += if self.rest().starts_with("\r\n") { 2 } else { usize::from(!self.rest().is_empty()) };
-        self.line += 1;
-        self.line_start = self.at;
-    }
-
-    fn pass_line(&mut self) {
-        self.at += self.rest().find(['\n', '\r']).unwrap_or(self.rest().len());
-    }
-
-    /// Passes over blanks, comments and line ends that are continued; says whether there were any.
-    fn pass_blanks(&mut self) -> Result<bool, VariableFault> {
-        let from = self.at;
-        while let Some(character) = self.peek() {
-            match character {
-                '\n' | '\r' => break,
-                _ if character.is_whitespace() || character == '\u{feff}' => self.at += character.len_utf8(),
-                '%' | '#' if self.begins_line() && self.is_block_mark('{') => self.pass_block_comment()?,
-                '%' | '#' => self.pass_line(),
-                '.' if self.rest().starts_with("...") => {
-                    self.pass_line();
-                    if self.peek().is_some() {
-                        self.new_line();
-                    }
-                }
-                _ => break,
-            }
-        }
-        Ok(self.at > from)
-    }
-
-    fn begins_line(&self) -> bool {
-        self.text[self.line_start..self.at].trim().is_empty()
-    }
-
-    /// Whether the rest of the line is a mark of comment and this bracket, which open or close a comment of several lines.
-    fn is_block_mark(&self, bracket: char) -> bool {
-        let line = self.rest().split(['\n', '\r']).next().unwrap_or_default().trim();
-        line.strip_prefix(['%', '#']).is_some_and(|rest| rest.strip_prefix(bracket) == Some(""))
-    }
-
-    fn pass_block_comment(&mut self) -> Result<(), VariableFault> {
-        let (line, mut depth) = (self.line, 0_usize);
-        loop {
-            depth = depth + usize::from(self.is_block_mark('{')) - usize::from(self.is_block_mark('}'));
-            self.pass_line();
-            if depth == 0 {
-                return Ok(());
-            }
-            if self.peek().is_none() {
-                let what = "the comment opened here is never closed; write %} on a line of its own".to_owned();
-                return Err(VariableFault::Line { variable: String::new(), line, what });
-            }
-            self.new_line();
-        }
-    }
-
-    /// A name, where one stands here.
-    fn name(&mut self) -> Option<&'t str> {
-        let rest = self.rest();
-        let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
-        let is_name = rest.starts_with(|c: char| c.is_alphabetic() || c == '_');
-        self.at += if is_name { end } else { 0 };
-        is_name.then_some(&rest[..end])
-    }
-
-    /// Names with points between them, where they stand here: "sys.A".
-    fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
-        let mut path: Vec<&'t str> = self.name().into_iter().collect();
-        while let Some(first) = path.first() {
-            if path.len() > MOST_NESTED {
-                return Err(VariableFault::TooDeep { variable: (*first).to_owned() });
-            }
-            let before = self.clone();
-            let next = if self.take(".") { self.name() } else { None };
-            let Some(name) = next else {
-                *self = before;
-                break;
-            };
-            budget.take(1, 16, name)?;
-            path.push(name);
-        }
-        Ok(path)
-    }
-
-    /// A text up to its closing quote on the same line; a doubled quote is a character.
-    fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
-        let opening = self.position();
-        let quote = self.peek().unwrap_or('\'');
-        self.at += 1;
-        let mut text = String::new();
-        loop {
-            let rest = self.rest();
-            let Some(end) = rest.find([quote, '\n', '\r']).filter(|&end| rest[end..].starts_with(quote)) else {
-                return refused(format!("a text begins here and has no end; write {quote} behind it"), opening);
-            };
-            budget.take(2 * end as u64 + 2, 1, "")?;
-            text.push_str(&rest[..end]);
-            self.at += end + 1;
-            if self.peek() != Some(quote) {
-                return Ok(text);
-            }
-            text.push(quote);
-            self.at += 1;
-        }
-    }
-
-    /// A number without a sign, and whether it is imaginary, where one stands here.
-    fn number(&mut self) -> Result<Option<(f64, bool)>, ValueError> {
-        let (rest, place) = (self.rest(), self.position());
-        let bytes = rest.as_bytes();
-        let digits = |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
-        let begins = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
-        if !(begins(0) || (rest.starts_with('.') && begins(1))) {
-            return Ok(None);
-        }
-        let mut end = digits(0);
-        // A point before an operator belongs to it: "1./x", "2.^n", "1...".
-        let operator = |at: usize| bytes.get(at).is_some_and(|byte| b"*/\\^'.".contains(byte));
-        if bytes.get(end) == Some(&b'.') && !operator(end + 1) {
-            end = digits(end + 1);
-        }
-        if bytes.get(end).is_some_and(|byte| b"eEdD".contains(byte)) {
-            let signed = end + 1 + usize::from(bytes.get(end + 1).is_some_and(|byte| b"+-".contains(byte)));
-            end = if begins(signed) { digits(signed) } else { end };
-        }
-        let value = rest[..end].replace(['d', 'D'], "e").parse();
-        let imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
-        end += usize::from(imaginary);
-        let tail = rest[end..].find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len() - end);
-        self.at += end + tail;
-        match value {
-            Ok(value) if tail == 0 => Ok(Some((value, imaginary))),
-            _ => refused(format!("\"{}\" is no number", excerpt(&rest[..end + tail])), place),
-        }
-    }
-
-    /// Goes on to the end of the statement; a bracket that is never closed is a fault, as it takes all that follows with it.
-    fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
-        let mut open: Vec<(char, Position)> = Vec::new();
-        loop {
-            budget.work(1, "")?;
-            let spaced = self.pass_blanks()?;
-            let Some(character) = self.peek() else { break };
-            let before = self.text[..self.at].chars().next_back();
-            let is_operand = before.is_some_and(|c| c.is_alphanumeric() || "_)]}'.".contains(c));
-            let in_matrix = matches!(open.last(), Some(('[' | '{', _)));
-            match character {
-                '\n' | '\r' => {
-                    // No round bracket reaches beyond its line.
-                    open.truncate(open.iter().rposition(|(bracket, _)| *bracket != '(').map_or(0, |last| last + 1));
-                    if open.is_empty() {
-                        return Ok(());
-                    }
-                    self.new_line();
-                    continue;
-                }
-                ';' | ',' if open.is_empty() => return Ok(()),
-                '\'' | '"' if character == '"' || !is_operand || (spaced && in_matrix) => {
-                    match self.quoted(budget) {
-                        Err(ValueError::Fault(fault)) => return Err(fault),
-                        Err(ValueError::NotUnderstood { .. }) => self.pass_line(),
-                        Ok(_) => {}
-                    }
-                    continue;
-                }
-                '(' | '[' | '{' if open.len() >= MOST_NESTED => {
-                    return Err(VariableFault::TooDeep { variable: String::new() });
-                }
-                '(' | '[' | '{' => open.push((character, self.position())),
-                ')' | ']' | '}' => {
-                    let opening = if character == ')' { '(' } else { char::from(character as u8 - 2) };
-                    open.truncate(open.iter().rposition(|(bracket, _)| *bracket == opening).unwrap_or(open.len()));
-                }
-                _ => {}
-            }
-            self.at += character.len_utf8();
-        }
-        match open.into_iter().rev().find(|(bracket, _)| *bracket != '(') {
-            None => Ok(()),
-            Some((bracket, Position { line, column })) => {
-                let what = format!("the bracket {bracket} in column {column} is never closed; close it");
-                Err(VariableFault::Line { variable: String::new(), line, what })
-            }
-        }
-    }
 }
 
 struct Reading<'t, 'm> {
@@ -375,8 +124,8 @@ impl<'t> Reading<'t, '_> {
         });
         let Some((names, _)) = names else { return self.pass_over(begin, start, "is not run") };
         let why = "it is the result of a function, which is not run; write its value";
-        let is_name = |name: &&str| name.starts_with(|c: char| c.is_alphabetic() || c == '_');
-        for name in names.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(is_name) {
+        let is_name = |name: &&str| begins_word(name);
+        for name in names.split(|c: char| !is_of_word(c)).filter(is_name) {
             self.set_unread(&[name], begin, why)?;
         }
         self.scanner.pass_statement(self.budget)
@@ -388,21 +137,23 @@ impl<'t> Reading<'t, '_> {
             0 => self.whole_value(),
             _ => refused("it is set within a condition or a loop, which is not run; write its value outside", begin),
         };
-        let unread = match outcome {
+        let name = || path.join(".");
+        match outcome {
             Ok(value) => return self.set(path, value),
-            Err(ValueError::Fault(fault)) => return Err(named(fault, path)),
-            Err(ValueError::NotUnderstood { what, at }) => (what, at.unwrap_or(begin)),
-        };
-        self.scanner = before;
-        self.set_unread(path, unread.1, &unread.0)?;
-        self.scanner.pass_statement(self.budget).map_err(|fault| named(fault, path))
+            Err(ValueError::Fault(fault)) => return Err(fault.of(name)),
+            Err(ValueError::NotUnderstood { what, at }) => {
+                self.scanner = before;
+                self.set_unread(path, at, &what)?;
+            }
+        }
+        self.scanner.pass_statement(self.budget).map_err(|fault| fault.of(name))
     }
 
     /// Sets a variable to what cannot be read.
     fn set_unread(&mut self, path: &[&'t str], at: Position, what: &str) -> Result<(), VariableFault> {
         let why = format!("line {}, column {}: {what}", at.line, at.column);
         self.budget.take(why.len() as u64, 1, path.first().unwrap_or(&""))?;
-        self.set(path, Value::Opaque { class: "an expression".to_owned(), why })
+        self.set(path, Value::opaque("an expression", why))
     }
 
     /// Sets a variable or one of its fields.
@@ -411,7 +162,7 @@ impl<'t> Reading<'t, '_> {
         self.budget.take(path.iter().map(|part| part.len() as u64 + 128).sum(), 2, name)?;
         let variables = &mut self.read.variables;
         let place = *self.places.entry(name).or_insert_with(|| {
-            variables.push(Variable { name: (*name).to_owned(), value: record(Vec::new()) });
+            variables.push(Variable { name: (*name).to_owned(), value: Value::Struct(StructArray::one(Vec::new())) });
             variables.len() - 1
         });
         set_field(&mut variables[place].value, fields, value);
@@ -430,7 +181,7 @@ impl<'t> Reading<'t, '_> {
 
     fn value(&mut self, depth: usize) -> Result<Value, ValueError> {
         if depth > MOST_NESTED {
-            return Err(VariableFault::TooDeep { variable: String::new() }.into());
+            return Err(VariableFault::too_deep("").into());
         }
         self.scanner.pass_blanks()?;
         let place = self.scanner.position();
@@ -444,12 +195,12 @@ impl<'t> Reading<'t, '_> {
                     reading.budget.take(4, 64, "")?;
                     reading.value(depth + 1)
                 })?;
-                Ok(Value::Cell(CellArray { shape: vec![rows, columns], values: by_columns(rows, columns, values) }))
+                Ok(Value::Cell(CellArray {
+                    shape: vec![rows, columns],
+                    values: first_index_fastest(&[rows, columns], values),
+                }))
             }
-            Some('\'' | '"') => {
-                let text = self.scanner.quoted(self.budget)?;
-                Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec![text] }))
-            }
+            Some('\'' | '"') => Ok(Value::text(self.scanner.quoted(self.budget)?)),
             Some('@') => refused(format!("functions are not read; {REMEDY}"), place),
             None | Some('\n' | '\r' | ';' | ',') => refused("a value is missing here; write it", place),
             Some(_) => {
@@ -582,7 +333,7 @@ impl<'t> Reading<'t, '_> {
         self.budget.take(elements.len() as u64, 2 * size_of::<Element>() as u64, "")?;
         let transposed = self.scanner.take("'");
         let count = elements.len();
-        let elements = if transposed { elements } else { by_columns(rows, columns, elements) };
+        let elements = if transposed { elements } else { first_index_fastest(&[rows, columns], elements) };
         let (rows, columns) = if transposed { (columns, rows) } else { (rows, columns) };
         let (mut re, mut im, mut texts) = (Vec::new(), Vec::new(), Vec::new());
         for element in elements {
@@ -628,12 +379,11 @@ impl<'t> Reading<'t, '_> {
                 return refused(format!("nothing is computed here; {REMEDY}"), self.scanner.position());
             }
         }
-        let made = match (known, function, arguments.as_slice()) {
-            (Some((_, fields)), ..) => record_of(function, fields, arguments),
-            (None, "string" | "char", [Value::Text(_)]) => arguments.pop().ok_or_else(String::new),
-            (None, ..) => filled(function, &arguments, self.budget)?,
-        };
-        made.or_else(|what| refused(what, place))
+        match (known, function, arguments.as_slice()) {
+            (Some((_, fields)), ..) => record_of(function, fields, arguments).or_else(|what| refused(what, place)),
+            (None, "string" | "char", [text @ Value::Text(_)]) => Ok(text.clone()),
+            (None, ..) => filled(function, &arguments, self.budget, place),
+        }
     }
 
     /// A copy of a variable or of one of its fields.
@@ -652,7 +402,7 @@ impl<'t> Reading<'t, '_> {
         if let Value::Opaque { .. } = value {
             return refused(format!("{} could not be read itself", path.join(".")), place);
         }
-        self.budget.take(memory_of(value, 0)?, 1, name)?;
+        self.budget.take(memory_of(value, 0)?, 1, "")?;
         Ok(value.clone())
     }
 }
@@ -675,36 +425,11 @@ fn changes_part(scanner: &Scanner<'_>) -> bool {
         open = open + usize::from(character == sign) - usize::from(character == close);
         if open == 0 {
             let behind = line[at + 1..].trim_start();
-            let behind = behind.trim_start_matches(|c: char| c == '.' || c == '_' || c.is_alphanumeric()).trim_start();
+            let behind = behind.trim_start_matches(|c: char| c == '.' || is_of_word(c)).trim_start();
             return behind.starts_with('=') && !behind.starts_with("==");
         }
     }
     false
-}
-
-/// A fault with the name of the variable that was being read.
-fn named(fault: VariableFault, path: &[&str]) -> VariableFault {
-    let name = || path.join(".");
-    match fault {
-        VariableFault::Line { variable, line, what } if variable.is_empty() => {
-            VariableFault::Line { variable: name(), line, what }
-        }
-        VariableFault::TooLarge { most_mib, .. } => VariableFault::TooLarge { variable: name(), most_mib },
-        VariableFault::TooDeep { .. } => VariableFault::TooDeep { variable: name() },
-        other => other,
-    }
-}
-
-/// Elements that stand row by row, the first index running fastest.
-fn by_columns<T>(rows: usize, columns: usize, elements: Vec<T>) -> Vec<T> {
-    let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
-    let places = (0..columns).flat_map(|column| (0..rows).map(move |row| row * columns + column));
-    places.filter_map(|place| elements[place].take()).collect()
-}
-
-/// One record.
-fn record(fields: Vec<(String, Vec<Value>)>) -> Value {
-    Value::Struct(StructArray { shape: vec![1, 1], fields })
 }
 
 /// The arguments under the names of fields, behind them the sample time Ts \[s\], where it is said, and names and values in turn.
@@ -730,11 +455,11 @@ fn record_of(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Va
         fields.retain(|(known, _)| *known != name);
         fields.push((name, vec![value]));
     }
-    Ok(record(fields))
+    Ok(Value::Struct(StructArray::one(fields)))
 }
 
 /// `zeros`, `ones` or `eye` of a number of rows and columns.
-fn filled(function: &str, sides: &[Value], budget: &ReadingBudget) -> Result<Result<Value, String>, VariableFault> {
+fn filled(function: &str, sides: &[Value], budget: &ReadingBudget, place: Position) -> Result<Value, ValueError> {
     let side = |value: &Value| match value {
         Value::Array(array) if array.len() == 1 && array.re[0].fract() == 0.0 && array.re[0] < 1e15 => {
             Some(array.re[0].max(0.0) as usize)
@@ -747,7 +472,7 @@ fn filled(function: &str, sides: &[Value], budget: &ReadingBudget) -> Result<Res
         _ => (None, None),
     };
     let Some((rows, columns)) = rows.zip(columns) else {
-        return Ok(Err(format!("{function}(…) is read with its numbers of rows and columns only; {REMEDY}")));
+        return refused(format!("{function}(…) is read with its numbers of rows and columns only; {REMEDY}"), place);
     };
     budget.take((rows as u64).saturating_mul(columns as u64), 8, "")?;
     let value = |at: usize| match function {
@@ -755,7 +480,7 @@ fn filled(function: &str, sides: &[Value], budget: &ReadingBudget) -> Result<Res
         "eye" if at % rows.max(1) == at / rows.max(1) => 1.0,
         _ => 0.0,
     };
-    Ok(Ok(Value::Array(Array::matrix(rows, columns, (0..rows * columns).map(value).collect()))))
+    Ok(Value::Array(Array::matrix(rows, columns, (0..rows * columns).map(value).collect())))
 }
 
 fn set_field(target: &mut Value, path: &[&str], value: Value) {
@@ -767,7 +492,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
     match target {
         Value::Struct(StructArray { fields, .. }) => {
             let place = fields.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
-                fields.push(((*name).to_owned(), vec![record(Vec::new())]));
+                fields.push(((*name).to_owned(), vec![Value::Struct(StructArray::one(Vec::new()))]));
                 fields.len() - 1
             });
             if let Some(slot) = fields[place].1.first_mut() {
@@ -777,7 +502,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
         Value::Opaque { .. } => {}
         _ => {
             let why = format!("{words} is given a field {name}; use another name for one of them");
-            *target = Value::Opaque { class: "a variable with a field".to_owned(), why };
+            *target = Value::opaque("a variable with a field", why);
         }
     }
 }
@@ -785,21 +510,9 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
 /// Memory that a copy of a value takes \[bytes\].
 fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
     if depth > MOST_NESTED {
-        return Err(VariableFault::TooDeep { variable: String::new() });
+        return Err(VariableFault::too_deep(""));
     }
-    let inner: u64 = match value {
-        Value::Array(array) => 16 * array.len() as u64,
-        Value::Text(text) => text.texts.iter().map(|text| text.len() as u64 + 32).sum(),
-        Value::Cell(CellArray { values, .. }) => {
-            values.iter().map(|value| memory_of(value, depth + 1)).sum::<Result<u64, _>>()?
-        }
-        Value::Struct(records) | Value::Object(crate::variables::Object { records, .. }) => {
-            let values = records.fields.iter().flat_map(|(_, values)| values);
-            values.map(|value| Ok(64 + memory_of(value, depth + 1)?)).sum::<Result<u64, VariableFault>>()?
-        }
-        Value::Opaque { class, why } => (class.len() + why.len()) as u64,
-    };
-    Ok(inner + 128)
+    value.inner().try_fold(value.own_memory(), |memory, inner| Ok(memory + memory_of(inner, depth + 1)?))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Matrices as text: one in a file, or several under their names, as programs print them.
 
-use crate::text::columns::{TextTable, comment, is_rule, line_fault, read_table};
-use crate::text::separator::{cell_number, excerpt, lines, refuse_binary};
+use crate::text::columns::{TextTable, comment, is_rule, read_table};
+use crate::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
 use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
 /// Matrices read from a text.
@@ -18,7 +18,7 @@ pub fn read_matrix(text: &str, name: &str, budget: &ReadingBudget) -> Result<Var
     let table = read_table(text, budget)?;
     if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
         let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
-        return Err(VariableFault::Line { variable: name.to_owned(), line: *line, what });
+        return Err(VariableFault::line(name, *line, what));
     }
     let value = matrix(&[table], 1.0, budget, name)?;
     Ok(Variable { name: name.to_owned(), value })
@@ -80,7 +80,7 @@ impl Reading<'_> {
             matrix.scale = scale;
             return Ok(());
         }
-        let numbers = line.split_whitespace().filter(|word| is_number(word)).count();
+        let numbers = line.split_whitespace().filter(|word| is_number_word(word)).count();
         let words = line.split_whitespace().count();
         let labelled = self.found.last().is_some_and(|matrix| matrix.labelled);
         let cut = line.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest);
@@ -89,7 +89,7 @@ impl Reading<'_> {
             Some(rest) if labelled && row_of_numbers(rest) => self.row(number, rest),
             _ if numbers == 0 && awaits_columns | labelled => self.columns(number, line),
             _ if 2 * numbers >= words => {
-                Err(line_fault(number, format!("\"{}\" is no row of numbers; correct it", excerpt(line))))
+                Err(VariableFault::line("", number, format!("\"{}\" is no row of numbers; correct it", excerpt(line))))
             }
             _ => {
                 self.notes.push(format!("line {number} (\"{}\") is passed over", excerpt(line)));
@@ -126,7 +126,7 @@ impl Reading<'_> {
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.found.last_mut() else {
             let what = "numbers without a name; write the name of the matrix on a line above them".to_owned();
-            return Err(line_fault(number, what));
+            return Err(VariableFault::line("", number, what));
         };
         self.budget.take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
         if matrix.parts.is_empty() {
@@ -161,38 +161,35 @@ impl Reading<'_> {
             variables.push(Variable { name, value });
         }
         if variables.is_empty() {
-            let found = "no name with numbers below it".to_owned();
-            return Err(VariableFault::Format { expected: "matrices under their names", found });
+            return Err(VariableFault::format("matrices under their names", "no name with numbers below it"));
         }
         Ok(NamedMatrices { variables, notes })
     }
 }
 
-fn is_number(word: &str) -> bool {
+fn is_number_word(word: &str) -> bool {
     let word = word.trim_end_matches([',', ';']);
-    !word.is_empty() && [false, true].iter().any(|&comma| cell_number(word, comma).is_some())
+    !word.is_empty() && is_number(word)
 }
 
 /// Whether a line consists of numbers, whatever stands between them.
 fn row_of_numbers(line: &str) -> bool {
     let mut words =
         line.split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|').filter(|w| !w.is_empty());
-    words.clone().next().is_some() && words.all(is_number)
+    words.clone().next().is_some() && words.all(is_number_word)
 }
 
 /// The rows of a part; faults name the line of the whole text.
 fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
     let table = read_table(&part.text, budget).map_err(|fault| match fault {
-        VariableFault::Line { line, what, .. } => {
-            VariableFault::Line { variable: name.to_owned(), line: place(line), what }
-        }
+        VariableFault::Line { line, what, .. } => VariableFault::line(name, place(line), what),
         other => other,
     })?;
     match table.skipped.first() {
         Some((line, text)) => {
             let what = format!("\"{}\" is no row like the others; complete it", excerpt(text));
-            Err(VariableFault::Line { variable: name.to_owned(), line: place(*line), what })
+            Err(VariableFault::line(name, place(*line), what))
         }
         None => Ok(table),
     }
@@ -204,11 +201,7 @@ fn matrix(tables: &[TextTable], scale: f64, budget: &ReadingBudget, name: &str) 
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
         let what = format!("parts of this matrix have {rows} and {found} rows; print it in one part");
-        return Err(VariableFault::Line {
-            variable: name.to_owned(),
-            line: other.lines.first().copied().unwrap_or(1),
-            what,
-        });
+        return Err(VariableFault::line(name, other.lines.first().copied().unwrap_or(1), what));
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;
@@ -234,8 +227,7 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
     let end = line.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).unwrap_or(line.len());
     let (name, behind) = line.split_at(end);
-    let numeric = [false, true].iter().any(|&comma| cell_number(name, comma).is_some());
-    if numeric || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+    if is_number(name) || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
         return None;
     }
     let behind = behind.trim_start();

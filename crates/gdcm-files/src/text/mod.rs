@@ -2,51 +2,38 @@
 
 mod column_meaning;
 mod columns;
-mod complex_cells;
 mod frequency_columns;
 mod heading;
 mod literals;
+mod matlab_scanner;
 mod matrix_text;
 mod separator;
 mod word_columns;
 
-use std::path::Path;
-
 use crate::file_error::FileError;
 use crate::importer::{Contents, Importer};
-use crate::variables::ReadingBudget;
 
 pub(crate) use column_meaning::says_quantity;
 pub(crate) use columns::{TextTable, read_table};
-pub(crate) use complex_cells::split_complex;
 pub use frequency_columns::UnsaidUnit;
 pub(crate) use frequency_columns::{FrequencyColumns, RecognisedResponse, ResponsePoints, Unrecognised};
 pub(crate) use matrix_text::{read_matrices, read_matrix};
 pub(crate) use separator::{decode, sections};
-pub(crate) use word_columns::{NumberedText, numbered_words};
+pub(crate) use word_columns::{NumberedText, numbered_words, split_complex};
 
 /// MATLAB's language.
-pub(crate) struct Literals;
-
-impl Importer for Literals {
-    fn name(&self) -> &'static str {
-        "MATLAB statements"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["m"]
-    }
-
-    fn recognises(&self, bytes: &[u8], ending: &str) -> bool {
-        ending == "m" && !begins_with_numbers(bytes) || Text.endings().contains(&ending) && begins_with_statement(bytes)
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const LITERALS: Importer = Importer {
+    name: "MATLAB statements",
+    endings: &["m"],
+    recognises: |bytes, ending| {
+        ending == "m" && !begins_with_numbers(bytes) || TEXT.endings.contains(&ending) && begins_with_statement(bytes)
+    },
+    read: |bytes, path, budget| {
         let read = decode(bytes, budget).and_then(|text| literals::read_literals(&text, budget));
         let literals::Statements { variables, notes } = read.map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Variables { variables, notes, pages_first: false })
-    }
-}
+    },
+};
 
 /// The lines with which a text begins, without comments of MATLAB and empty ones.
 fn first_lines(bytes: &[u8]) -> impl Iterator<Item = String> {
@@ -78,22 +65,11 @@ fn begins_with_numbers(bytes: &[u8]) -> bool {
 }
 
 /// Numbers in columns, or matrices.
-pub(crate) struct Text;
-
-impl Importer for Text {
-    fn name(&self) -> &'static str {
-        "a text"
-    }
-
-    fn endings(&self) -> &'static [&'static str] {
-        &["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out"]
-    }
-
-    fn recognises(&self, _: &[u8], _: &str) -> bool {
-        true
-    }
-
-    fn read(&self, bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Contents, FileError> {
+pub(crate) const TEXT: Importer = Importer {
+    name: "a text",
+    endings: &["csv", "txt", "tsv", "dat", "asc", "prn", "log", "out"],
+    recognises: |_, _| true,
+    read: |bytes, path, budget| {
         decode(bytes, budget).map(Contents::Text).map_err(|fault| FileError::variables(path, fault))
-    }
-}
+    },
+};

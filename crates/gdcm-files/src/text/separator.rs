@@ -46,14 +46,26 @@ impl Separator {
         Cells { rest: Some(line), separator: self }
     }
 
-    fn is(self, character: char) -> bool {
+    /// The sign that is written between cells.
+    pub(super) fn sign(self) -> char {
         match self {
-            Separator::Tab => character == '\t',
-            Separator::Semicolon => character == ';',
-            Separator::Pipe => character == '|',
-            Separator::Comma => character == ',',
-            Separator::Blanks => character.is_whitespace(),
+            Separator::Tab => '\t',
+            Separator::Semicolon => ';',
+            Separator::Pipe => '|',
+            Separator::Comma => ',',
+            Separator::Blanks => ' ',
         }
+    }
+
+    /// Cells as a line; one that holds the sign stands in quotes.
+    pub(super) fn line(self, cells: impl Iterator<Item = String>) -> String {
+        let sign = self.sign();
+        let cell = |cell: String| if cell.contains(sign) { format!("\"{cell}\"") } else { cell };
+        cells.map(cell).collect::<Vec<_>>().join(&String::from(sign))
+    }
+
+    fn is(self, character: char) -> bool {
+        if self == Separator::Blanks { character.is_whitespace() } else { character == self.sign() }
     }
 }
 
@@ -131,6 +143,11 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
         return Some(number);
     }
     if is_missing(cell) { Some(f64::NAN) } else { spelled_otherwise(cell, decimal_comma) }
+}
+
+/// Whether a cell is a number, or says that there is none, with either decimal mark.
+pub(super) fn is_number(cell: &str) -> bool {
+    [false, true].iter().any(|&decimal_comma| cell_number(cell, decimal_comma).is_some())
 }
 
 fn is_missing(cell: &str) -> bool {
@@ -232,8 +249,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     }
     let body = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]).unwrap_or(bytes);
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
-        let found = format!("a file that is no text (byte {at} of it is zero)");
-        return Err(VariableFault::Format { expected: "a text", found });
+        return Err(no_text("a text", at));
     }
     // A character of Latin-1 takes at most three bytes of UTF-8.
     budget.take(body.len() as u64, 3, "")?;
@@ -253,7 +269,7 @@ fn latin1(byte: u8) -> char {
 fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, budget: &ReadingBudget) -> Result<String, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
-        return Err(VariableFault::CutOff { variable: String::new(), offset: body.len() as u64 + 2 });
+        return Err(VariableFault::cut_off("", body.len() + 2));
     }
     budget.take(pairs.len() as u64, 4, "")?;
     let decoded = char::decode_utf16(pairs.iter().map(|&pair| word(pair)));
@@ -291,12 +307,11 @@ impl<'t> Iterator for Lines<'t> {
 
 /// Refuses what is no text: no text of numbers holds a zero byte.
 pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), VariableFault> {
-    match text.find('\0') {
-        Some(at) => {
-            Err(VariableFault::Format { expected, found: format!("a file that is no text (byte {at} of it is zero)") })
-        }
-        None => Ok(()),
-    }
+    text.find('\0').map_or(Ok(()), |at| Err(no_text(expected, at)))
+}
+
+fn no_text(expected: &'static str, at: usize) -> VariableFault {
+    VariableFault::format(expected, format!("a file that is no text (byte {at} of it is zero)"))
 }
 
 /// The beginning of a text for a message: its first line, at most 40 characters, visible ones only.

@@ -2,11 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::separator::Separator;
 use crate::text::columns::comment;
-use crate::text::separator::cell_number;
-use crate::text::separator::clock_s;
-use crate::text::separator::lines;
+use crate::text::separator::{Separator, cell_number, clock_s, is_number, lines};
 use crate::variables::{ReadingBudget, VariableFault};
 
 /// Lines that are looked at before the columns are taken as known.
@@ -69,25 +66,17 @@ struct Numbering {
 impl Numbering {
     /// A row with numbers in place of words; the heading as it is.
     fn line(&mut self, cells: Vec<String>, separator: Separator) -> String {
-        let is_number = |cell: &String| [false, true].iter().any(|&comma| cell_number(cell, comma).is_some());
-        let numbers = cells.iter().zip(&self.columns).filter(|(_, column)| column.kind == Kind::Numbers);
-        let is_row = numbers.clone().all(|(cell, _)| is_number(cell));
+        let mut numbers = cells.iter().zip(&self.columns).filter(|(_, column)| column.kind == Kind::Numbers);
+        let is_row = numbers.all(|(cell, _)| is_number(cell));
         if !is_row {
             self.heading.get_or_insert_with(|| cells.clone());
         }
         let cell = |(cell, column): (String, &mut Column)| match column.kind {
-            _ if !is_row => quoted(cell, separator),
-            Kind::Numbers => quoted(cell, separator),
-            Kind::Clock => column.seconds(&cell),
-            Kind::Words => column.number(cell),
+            Kind::Clock if is_row => column.seconds(&cell),
+            Kind::Words if is_row => column.number(cell),
+            _ => cell,
         };
-        let cells: Vec<String> = cells.into_iter().zip(&mut self.columns).map(cell).collect();
-        cells.join(match separator {
-            Separator::Tab => "\t",
-            Separator::Semicolon => ";",
-            Separator::Pipe => "|",
-            Separator::Comma | Separator::Blanks => ",",
-        })
+        separator.line(cells.into_iter().zip(&mut self.columns).map(cell))
     }
 
     fn notes(&self) -> Vec<String> {
@@ -139,16 +128,6 @@ impl Column {
     }
 }
 
-/// A cell that may hold the separator stands in quotes again.
-fn quoted(cell: String, separator: Separator) -> String {
-    let holds = |mark: char| cell.contains(mark);
-    match separator {
-        Separator::Comma if holds(',') => format!("\"{cell}\""),
-        Separator::Semicolon if holds(';') => format!("\"{cell}\""),
-        _ => cell,
-    }
-}
-
 /// The separator with which most lines have one width, and what each column then holds.
 fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     let sample: Vec<&str> = lines(text)
@@ -172,9 +151,7 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     let kind = |index: usize| {
         let filled = || rows.iter().map(|row| row[index].as_str()).filter(|cell| !cell.is_empty());
         let most = |is_it: &dyn Fn(&str) -> bool| 2 * filled().filter(|cell| is_it(cell)).count() > filled().count();
-        if filled().next().is_none()
-            || most(&|cell| [false, true].iter().any(|&comma| cell_number(cell, comma).is_some()))
-        {
+        if filled().next().is_none() || most(&is_number) {
             Kind::Numbers
         } else if most(&|cell| clock_s(cell).is_some()) {
             Kind::Clock
@@ -186,6 +163,83 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     let numbers = kinds.iter().filter(|kind| **kind == Kind::Numbers).count();
     let column = |kind: Kind| Column { kind, words: BTreeMap::new(), clock: None };
     (numbers >= 2 && numbers < width).then(|| (separator, kinds.into_iter().map(column).collect()))
+}
+
+// Columns of complex numbers, `(1.5-2j)`, as columns of their real and imaginary parts.
+
+/// The text with two columns in place of each that holds complex numbers, their headings with "re" and "im" before them; nothing where
+/// there is none. Lines keep their numbers.
+pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
+    let Some((separator, is_complex)) = complex_columns(text) else { return Ok(None) };
+    budget.take(text.len() as u64, 3, "")?;
+    let mut split = String::with_capacity(2 * text.len());
+    for (_, line) in lines(text) {
+        budget.work(1, "")?;
+        let cells: Vec<String> = separator.cells(comment(line).unwrap_or(line)).map(|cell| cell.into_owned()).collect();
+        if cells.len() == is_complex.len() {
+            let parts = cells.iter().zip(&is_complex).flat_map(|(cell, is_complex)| match is_complex {
+                true => two_cells(cell, separator).to_vec(),
+                false => vec![cell.clone()],
+            });
+            split.push_str(&separator.line(parts));
+        } else {
+            split.push_str(line);
+        }
+        split.push('\n');
+    }
+    // Behind the last end of a line an empty one was read.
+    split.pop();
+    Ok(Some(split))
+}
+
+/// What stands between the cells of the first line that holds complex numbers beside real ones, and which cells they are.
+fn complex_columns(text: &str) -> Option<(Separator, Vec<bool>)> {
+    /// Lines that are looked at.
+    const SAMPLE: usize = 200;
+    let of_line = |line: &str| {
+        Separator::ALL.into_iter().find_map(|separator| {
+            let parsed = |cell: &str| match parts(cell) {
+                Some(_) => Some(true),
+                None => cell_number(cell, false).map(|_| false),
+            };
+            let cells = separator.cells(line).map(|cell| parsed(&cell)).collect::<Option<Vec<bool>>>()?;
+            (cells.len() > 1 && cells.contains(&true)).then_some((separator, cells))
+        })
+    };
+    lines(text).filter(|(_, line)| comment(line).is_none()).take(SAMPLE).find_map(|(_, line)| of_line(line))
+}
+
+/// Real and imaginary part of a number; two headings of one.
+fn two_cells(cell: &str, separator: Separator) -> [String; 2] {
+    if let Some(parts) = parts(cell) {
+        return parts;
+    }
+    let cell = cell.trim();
+    match cell_number(cell, false) {
+        Some(number) if number.is_nan() => [cell, cell].map(str::to_owned),
+        Some(_) => [cell, "0"].map(str::to_owned),
+        None => {
+            let joint = if separator == Separator::Blanks { "_" } else { " " };
+            ["re", "im"].map(|part| format!("{part}{joint}{cell}"))
+        }
+    }
+}
+
+/// Real and imaginary part of "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
+fn parts(cell: &str) -> Option<[String; 2]> {
+    let cell: String = cell.chars().filter(|letter| !letter.is_whitespace()).collect();
+    let inner = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(&cell);
+    let inner = inner.strip_suffix(['i', 'j'])?.trim_end_matches('*').replace("+-", "-");
+    let is_sign = |(at, letter): &(usize, char)| {
+        *at > 0 && matches!(letter, '+' | '-') && !inner[..*at].ends_with(['e', 'E', 'd', 'D'])
+    };
+    let (re, im) = match inner.char_indices().rfind(is_sign) {
+        Some((at, _)) => inner.split_at(at),
+        None => ("0", inner.as_str()),
+    };
+    let im = im.trim_start_matches('+');
+    let is_number = |text: &str| !text.is_empty() && cell_number(text, false).is_some_and(|number| !number.is_nan());
+    (is_number(re) && is_number(im)).then(|| [re, im].map(str::to_owned))
 }
 
 #[cfg(test)]
@@ -222,5 +276,29 @@ mod tests {
         assert_eq!(numbered("t,P,Q\n0,1,2\n1,2,3\n"), None);
         assert_eq!(numbered("Dear sir,\nthis is, as you say, a text,\nof words\n"), None);
         assert_eq!(numbered(""), None);
+    }
+}
+
+#[cfg(test)]
+mod complex_tests {
+    use super::*;
+
+    fn split(text: &str) -> Option<String> {
+        split_complex(text, &ReadingBudget::new(1 << 20)).unwrap()
+    }
+
+    #[test]
+    fn complex_numbers_of_python_and_matlab_become_two_columns() {
+        let text = "omega,H\n1,(1.5-2j)\n2,3e-2+4e+1i\n3,-2j\n4,7\n";
+        assert_eq!(split(text).unwrap(), "omega,re H,im H\n1,1.5,-2\n2,3e-2,4e+1\n3,0,-2\n4,7,0\n");
+        let blanks = "# w H\n 1.0e+00 (1.0e+00+-2.0e+00j)\n";
+        assert_eq!(split(blanks).unwrap(), "w re_H im_H\n1.0e+00 1.0e+00 -2.0e+00\n");
+    }
+
+    #[test]
+    fn other_tables_and_words_are_left_alone() {
+        for text in ["w,re,im\n1,2,3\n", "t;mode\n1;j\n", "", "a,i\nb,j\n"] {
+            assert_eq!(split(text), None, "{text}");
+        }
     }
 }

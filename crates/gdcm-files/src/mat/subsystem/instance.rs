@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::{Content, Property, Reference, Subsystem, is_enumeration, own_weight, packed_text};
+use super::{Content, Property, Reference, Subsystem, is_enumeration, packed_text};
 use crate::mat::matrix::unread_because;
 use crate::mat::{FieldPath, Step};
 use crate::variables::{
@@ -101,7 +101,7 @@ impl<'s> Assembly<'s> {
     fn fill(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
         self.budget.take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
-        values.extend((0..missing).map(|_| Value::Array(Array::matrix(0, 0, Vec::new()))));
+        values.extend((0..missing).map(|_| Value::empty()));
         Ok(())
     }
 
@@ -148,10 +148,7 @@ impl<'s> Assembly<'s> {
                 let value = subsystem.values.get(cell).ok_or_else(|| super::damaged("a property has no value"))?;
                 self.copy(value, trail)
             }
-            Content::Name(name) => {
-                let name = subsystem.directory.name(name).unwrap_or_default().to_owned();
-                Ok(Value::Text(TextArray { shape: vec![1, 1], texts: vec![name] }))
-            }
+            Content::Name(name) => Ok(Value::text(subsystem.directory.name(name).unwrap_or_default())),
             Content::Number(number) => Ok(Value::Array(Array {
                 shape: vec![1, 1],
                 kind: if number <= 1 { ElementKind::Logical } else { ElementKind::Integer },
@@ -163,7 +160,7 @@ impl<'s> Assembly<'s> {
 
     /// A value of a cell, with the objects that it refers to in their places.
     pub(super) fn copy(&mut self, value: &Value, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
-        self.budget.take(1, own_weight(value), "")?;
+        self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {
             return self.referred(&reference, trail);
         }

@@ -85,7 +85,7 @@ fn directory_bytes(cell: Option<&Value>) -> Result<Vec<u8>, VariableFault> {
 }
 
 fn damaged(what: impl Into<String>) -> VariableFault {
-    VariableFault::Damaged { variable: String::new(), what: what.into(), offset: 0 }
+    VariableFault::damaged("", what, 0)
 }
 
 // Which objects a file has, and where their properties lie.
@@ -324,25 +324,6 @@ impl Reference {
     }
 }
 
-// How much memory a value takes.
-
-/// Bytes that a value takes without the values in it, rounded up.
-pub(super) fn own_weight(value: &Value) -> u64 {
-    let shape = |shape: &[usize]| size_of_val(shape);
-    let text = |text: &String| size_of::<String>() + text.len();
-    let bytes = match value {
-        Value::Array(array) => shape(&array.shape) + array.len() * if array.im.is_some() { 16 } else { 8 },
-        Value::Text(texts) => shape(&texts.shape) + texts.texts.iter().map(text).sum::<usize>(),
-        Value::Cell(cell) => shape(&cell.shape),
-        Value::Struct(records) => {
-            shape(&records.shape) + records.fields.iter().map(|(name, _)| 48 + text(name)).sum::<usize>()
-        }
-        Value::Object(object) => shape(&object.records.shape) + text(&object.class),
-        Value::Opaque { class, why } => text(class) + text(why),
-    };
-    (size_of::<Value>() + bytes) as u64
-}
-
 // Members of enumerations.
 
 /// The field by which the record is known that stands for members of an enumeration.
@@ -373,8 +354,7 @@ impl Subsystem {
         let Some(members) = indices.re.iter().map(name).collect::<Option<Vec<_>>>() else { return Ok(opaque()) };
         let bytes = members.iter().map(|name| name.len() as u64 + 256).sum();
         budget.take(1, bytes, "").map_err(|fault| trail.name(fault))?;
-        let text = |name: &&str| Value::Text(TextArray { shape: vec![1, 1], texts: vec![(*name).to_owned()] });
-        let fields = vec![(MEMBER.to_owned(), members.iter().map(text).collect())];
+        let fields = vec![(MEMBER.to_owned(), members.iter().copied().map(Value::text).collect())];
         let records = StructArray { shape: indices.shape.clone(), fields };
         Ok(Value::Object(Object { class: class.to_owned(), records }))
     }

@@ -295,7 +295,7 @@ fn dock_head_ui(
             let others: Vec<View> = View::docked(state).collect();
             for docked in &others {
                 let is_front = *docked == view;
-                let text = RichText::new(docked.kind().long_name).font(medium(BODY_SIZE));
+                let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name())).font(medium(BODY_SIZE));
                 if others.len() == 1 {
                     ui.label(text);
                 } else {

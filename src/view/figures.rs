@@ -6,10 +6,9 @@ use gdcm_core::study::Table;
 use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
 use super::plot::{BodeView, Pane};
-use super::views::{assessed_pairs, assessment_choice};
 use super::views::{
-    bode_options, condition_source, net_gain_pairs, requirement_tables, shown_couplings, shown_over_time,
-    shown_requirements,
+    assessed_pairs, assessment_choice, bode_options, condition_source, net_gain_pairs, requirement_tables,
+    shown_couplings, shown_over_time, shown_requirements,
 };
 use super::{Command, State, View, named};
 

@@ -1,14 +1,14 @@
 //! An axis taken hold of: the wheel over it zooms it, dragging it pans it, a double click or a secondary click asks for its limits.
 
 use egui::{
-    CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui, Vec2, WidgetInfo,
+    CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui, Vec2, WidgetInfo, vec2,
 };
 use gdcm_files::figure::{Range, compact};
 
 use super::axes::Ticks;
 use super::bode::BodeScene;
 use super::bode_view::BodeView;
-use super::curve::Pane;
+use super::drawn_curves::Pane;
 use super::navigation::turned;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
@@ -46,7 +46,7 @@ pub(super) fn axis_strips_ui(
         let response = response.on_hover_cursor(icon);
         take_hold(ui, (axis, pane), &response, view);
         if response.double_clicked() || response.secondary_clicked() {
-            let texts = axis.texts(scene, view.axis(axis));
+            let texts = axis.texts(scene, view.axis_mut(axis).range());
             view.limits = Some(LimitsForm { axis, pane, texts, trouble: None, is_new: true });
         }
         limits_ui(ui, (axis, pane), &response, scene, view, palette);
@@ -54,13 +54,16 @@ pub(super) fn axis_strips_ui(
 }
 
 fn take_hold(ui: &Ui, (axis, pane): (PlotAxis, Pane), response: &Response, view: &mut BodeView) {
+    let is_across = axis == PlotAxis::Frequency;
     let drag = response.drag_delta();
     if drag != Vec2::ZERO {
-        view.pan_axis(axis, pane, drag);
+        view.pan(pane, if is_across { vec2(drag.x, 0.0) } else { vec2(0.0, drag.y) });
         ui.ctx().request_repaint();
     }
     if let Some((turn, pointer)) = turned(ui.ctx(), response) {
-        view.zoom_axis(axis, pane, pointer, f64::from(turn.along_one_axis()));
+        let factor = f64::from(turn.along_one_axis());
+        let (frequencies, values) = if is_across { (factor, 1.0) } else { (1.0, factor) };
+        view.zoom(pane, pointer, frequencies, values);
         ui.ctx().request_repaint();
     }
 }
@@ -92,10 +95,10 @@ fn limits_ui(
         }
         FormAnswer::Show => match axis.range(scene, &form.texts) {
             Ok(range) => {
-                view.choose(axis, range);
+                view.axis_mut(axis).choose(range);
                 is_open = false;
             }
-            Err(refusal) => form.trouble = Some(refusal.to_string()),
+            Err(refusal) => form.trouble = Some(refusal),
         },
     }
     if is_open {
@@ -154,22 +157,6 @@ pub(super) enum PlotAxis {
     Values(Pane),
 }
 
-/// Why typed limits are not shown.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub(super) enum LimitRefusal {
-    /// The text is no number of this axis.
-    #[error("\"{text}\" is no {what}")]
-    NoNumber {
-        /// What was typed.
-        text: String,
-        /// What was expected.
-        what: &'static str,
-    },
-    /// The lower limit is not below the upper one.
-    #[error("the lower limit has to be below the upper one")]
-    NotAscending,
-}
-
 impl PlotAxis {
     /// "Frequency axis, magnitude plot".
     pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
@@ -203,25 +190,26 @@ impl PlotAxis {
     }
 
     /// The range between two numbers as they are typed, or why it cannot be shown.
-    pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, LimitRefusal> {
+    pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, String> {
         let [min, max] = [self.place(scene, &texts[0])?, self.place(scene, &texts[1])?];
-        if min < max { Ok(Range { min, max }) } else { Err(LimitRefusal::NotAscending) }
+        let range = (min < max).then_some(Range { min, max });
+        range.ok_or_else(|| "the lower limit has to be below the upper one".to_owned())
     }
 
     /// The place on the axis of a number as it is typed, with either minus sign.
-    fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, LimitRefusal> {
+    fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
         let number = text.trim().replace('\u{2212}', "-").parse::<f64>().ok();
         let what = if self == Self::Frequency { "frequency" } else { "value" };
         let place = number.map(|number| self.ticks(scene).place(number));
-        let finite = place.filter(|place| place.is_finite());
-        finite.ok_or_else(|| LimitRefusal::NoNumber { text: text.trim().to_owned(), what })
+        place.filter(|place| place.is_finite()).ok_or_else(|| format!("\"{}\" is no {what}", text.trim()))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::axis_strip::*;
     use gdcm_files::figure::FrequencyUnit;
+
+    use super::*;
 
     fn texts(min: &str, max: &str) -> [String; 2] {
         [min.to_owned(), max.to_owned()]

@@ -3,26 +3,24 @@
 use std::collections::BTreeSet;
 
 use egui::{
-    Align2, Color32, CursorIcon, FontId, Id, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2,
-    vec2,
+    Align2, Color32, CursorIcon, Id, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_core::units::signed;
 use gdcm_files::figure::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
-use super::bode_pane::{BandChange, Emphasis, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui};
+use super::bode_pane::{BodeBand, Emphasis, ReferenceLine, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui, rule_ends};
 use super::bode_view::BodeView;
-use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
-use super::legend::{Chip, ChipEvent, Chips, RoleChip, role_chips};
-use super::navigation::pressed_digit;
-use super::picking::{Hit, nearest, touched};
+use super::drawn_curves::{BodeCurve, CurveId, Pane};
+use super::legend::{Chip, Chips, role_chips};
+use super::navigation::{Hit, nearest, pressed_digit, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, readout_strip_ui};
-use super::rule::{BodeBand, ReferenceLine, rule_ends};
-use crate::view::controls::{elided, named, painted_text};
+use crate::view::CurveCommand;
+use crate::view::controls::{elided, named, painted_text, row_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Part of the height that the magnitude plot gets.
@@ -42,7 +40,7 @@ const LEAST_WITH_COHERENCE: f32 = 380.0;
 const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
 
 /// What a Bode plot shows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct BodeScene<'a> {
     /// Responses, or what the fit sees of them.
     pub quantity: BodeQuantity<'a>,
@@ -82,8 +80,8 @@ pub struct BodeScene<'a> {
     pub raised: Option<Role>,
     /// Whether the ends of the heavy curves are named in the margin.
     pub names_curves: bool,
-    /// Roles whose curves are not drawn.
-    pub hidden_roles: &'a BTreeSet<Role>,
+    /// Roles whose curves are not drawn, where there are some.
+    pub hidden_roles: Option<&'a BTreeSet<Role>>,
     /// What holds for the plot now.
     pub chips: &'a [Chip],
     /// The band of comparison: lower and upper end \[rad/s\].
@@ -118,8 +116,6 @@ pub struct InvalidRegion {
     pub ends_db: Option<[f64; 2]>,
 }
 
-static NO_ROLES: BTreeSet<Role> = BTreeSet::new();
-
 impl<'a> BodeScene<'a> {
     /// "+19.4 dB": how far the leads raise the magnitude where the curves end.
     fn price_words(&self) -> Option<String> {
@@ -129,33 +125,7 @@ impl<'a> BodeScene<'a> {
 
     /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
     pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
-        Self {
-            quantity: BodeQuantity::RESPONSE,
-            pair_title,
-            curves,
-            rules: &[],
-            bands: &[],
-            coherence: &[],
-            least_coherence: 0.0,
-            strips: &[],
-            omega_range: None,
-            cursor: None,
-            pinned: &[],
-            crossings: &[],
-            readout: None,
-            notes: [None; 2],
-            missing: None,
-            invalid: None,
-            shows_bands: None,
-            raised: None,
-            names_curves: false,
-            hidden_roles: &NO_ROLES,
-            chips: &[],
-            band,
-            unit: FrequencyUnit::RadPerSecond,
-            stale: false,
-            message: None,
-        }
+        Self { pair_title, curves, band, ..Self::default() }
     }
 }
 
@@ -179,24 +149,14 @@ pub enum BodeEvent {
     },
     /// The band was let go after dragging.
     BandReleased,
-    /// The chip of a role was clicked.
-    RoleToggled(Role),
-    /// It was clicked with Alt held: this role alone.
-    RoleAlone(Role),
-    /// It was clicked with Shift held: this role in front.
-    RoleRaised(Role),
-    /// The chip of the bands was clicked.
-    BandsShown(bool),
+    /// Curves are to be shown in another way, or frequencies to be marked.
+    Display(CurveCommand),
     /// The model of a curve is to be rejected, for a reason.
     RejectedBecause(CurveId, String),
     /// Something was chosen from a curve's menu.
     Wished(CurveId, CurveWish),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),
-    /// A frequency \[rad/s\] is to be marked.
-    CursorPinned(f64),
-    /// The marks of frequencies are to be taken away.
-    CursorsUnpinned,
     /// A chip was clicked, by its index.
     ChipClicked(usize),
 }
@@ -232,7 +192,7 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
         if panes_ui(ui, &places, &visible, view, palette, &mut events) {
             let roles = role_chips(scene.curves, scene.hidden_roles, palette);
             let pressed = pressed_digit(ui).and_then(|digit| roles.get(digit.checked_sub(1)?));
-            events.extend(pressed.map(|chip| BodeEvent::RoleToggled(chip.role)));
+            events.extend(pressed.map(|chip| BodeEvent::Display(CurveCommand::ToggleRole(chip.role))));
         }
         headings_ui(ui, &places, &visible, view, palette);
     });
@@ -254,20 +214,12 @@ fn chips_ui(
         roles.iter_mut().filter(|chip| chip.role == of).for_each(|chip| chip.lit = true);
     }
     let plot = scene.quantity.label_suffix();
-    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips, is_tight: false };
-    let is_tight = chips.width(ui) > rect.width();
-    if is_tight {
-        roles.iter_mut().for_each(RoleChip::shorten);
+    let mut chips = Chips { plot, roles, bands: scene.shows_bands, states: scene.chips, is_tight: false };
+    if chips.width(ui) > rect.width() {
+        chips.tighten();
     }
-    let chips = Chips { plot, roles: &roles, bands: scene.shows_bands, states: scene.chips, is_tight };
     let (height, event) = chips.ui(ui, rect, palette);
-    events.extend(event.map(|event| match event {
-        ChipEvent::Toggled(role) => BodeEvent::RoleToggled(role),
-        ChipEvent::Alone(role) => BodeEvent::RoleAlone(role),
-        ChipEvent::Raised(role) => BodeEvent::RoleRaised(role),
-        ChipEvent::Bands(shown) => BodeEvent::BandsShown(shown),
-        ChipEvent::Clicked(index) => BodeEvent::ChipClicked(index),
-    }));
+    events.extend(event);
     height
 }
 
@@ -276,8 +228,7 @@ fn has_data(curves: &[BodeCurve]) -> bool {
     curves.iter().any(is_finite)
 }
 
-///
-/// Gives whether one of them has the focus.
+/// Draws both panes and does what is asked in them; gives whether one of them has the focus.
 fn panes_ui(
     ui: &mut Ui,
     places: &Places,
@@ -294,14 +245,14 @@ fn panes_ui(
     view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
     let cursor = pointing.map(|pointing| pointing.log_omega).or(scene.cursor.map(f64::log10));
     let emphasis = Emphasis { curve: meant, cursor };
-    for (pane, rect) in [(Pane::Magnitude, places.panes[0]), (Pane::Phase, places.panes[1])] {
+    for (pane, rect) in PANES.into_iter().zip(places.panes) {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
-        drag_band(ui, pane, scene, view, palette, events);
+        events.extend(band_handles_ui(ui, pane, scene, view, palette));
         ask_for_menu(&response, scene, pointing, view);
         has_focus |= response.has_focus();
         menu_ui(&response, scene, view, events, palette);
-        set_cursor_icon(response, hit);
+        response.on_hover_cursor(if hit.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair });
     }
     if let Some((pane, area)) = view.selection.take()
         && let Some(transform) = view.transform(pane)
@@ -372,7 +323,7 @@ impl Pointing {
         let pointer = ui.input(|input| input.pointer.hover_pos())?;
         let is_inside = |rect: Rect| rect.contains(pointer) && ui.rect_contains_pointer(rect);
         let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
-        [Pane::Magnitude, Pane::Phase].into_iter().find_map(|pane| {
+        PANES.into_iter().find_map(|pane| {
             let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
             let log_omega = transform.value_from_position(pointer).x;
             // While something is dragged, curves passing under the pointer are not meant.
@@ -381,6 +332,9 @@ impl Pointing {
         })
     }
 }
+
+/// The panes, from above.
+pub(crate) const PANES: [Pane; 2] = [Pane::Magnitude, Pane::Phase];
 
 fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<BodeEvent>) {
     if view.hovered != hovered {
@@ -414,65 +368,35 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
     }
 }
 
-fn drag_band(
-    ui: &Ui,
-    pane: Pane,
-    scene: &BodeScene<'_>,
-    view: &BodeView,
-    palette: &Palette,
-    events: &mut Vec<BodeEvent>,
-) {
-    let Some(transform) = view.transform(pane) else { return };
-    let place = scene.quantity.place(pane);
-    events.extend(band_handles_ui(ui, &place, scene.band, transform, scene.unit, palette).map(|change| match change {
-        BandChange::Dragged { min, max } => BodeEvent::BandDragged { min, max },
-        BandChange::Released => BodeEvent::BandReleased,
-    }));
-}
-
-fn set_cursor_icon(response: Response, hit: Option<Hit>) {
-    let icon = if hit.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair };
-    response.on_hover_cursor(icon);
-}
-
 /// What stands around the panes: what each shows, what the correction did there, the values at the cursor, the names of the heavy
 /// curves at their ends, and whether newer curves are on their way.
 fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
-    let small = FontId::proportional(SMALL_SIZE);
-    for (index, pane) in [Pane::Magnitude, Pane::Phase].into_iter().enumerate() {
-        let line = places.headings[index];
+    for ((pane, line), note) in PANES.into_iter().zip(places.headings).zip(scene.notes) {
         let label = scene.quantity.axis_label(pane);
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
         let name = painted_text(ui, line, 0.0, name, medium(BODY_SIZE), palette.text);
-        let unit = unit.trim_end_matches(']');
-        let unit = painted_text(
-            ui,
-            line,
-            name.right() - line.left() + 4.0,
-            unit,
-            FontId::proportional(BODY_SIZE),
-            palette.dim_text,
-        );
-        if let Some(note) = scene.notes[index] {
+        let (unit, beside) = (unit.trim_end_matches(']'), name.right() - line.left() + 4.0);
+        let unit = row_text(ui, line, beside, unit, BODY_SIZE, palette.dim_text);
+        if let Some(note) = note {
             let color = if note.warns { palette.warning } else { palette.dim_text };
-            let verdict = painted_text(ui, line, -0.01, &note.verdict, FontId::proportional(BODY_SIZE), color);
+            let verdict = row_text(ui, line, -0.01, &note.verdict, BODY_SIZE, color);
             let mut rest = line.with_max_x(verdict.left() - 12.0);
             // Beside the bracket where there is a margin, else here.
             if let Some(price) = scene.price_words().filter(|_| pane == Pane::Magnitude && !scene.names_curves) {
                 let words = format!("leads {price}");
-                let place = painted_text(ui, rest, -0.01, &words, FontId::proportional(BODY_SIZE), palette.warning);
+                let place = row_text(ui, rest, -0.01, &words, BODY_SIZE, palette.warning);
                 rest = rest.with_max_x(place.left() - 12.0);
             }
             let shown = elided(ui, &note.cost, rest.right() - unit.right() - 8.0, BODY_SIZE);
-            painted_text(ui, rest, -0.01, &shown, FontId::proportional(BODY_SIZE), palette.dim_text);
-        } else if scene.stale && index == 0 {
-            painted_text(ui, line, -0.01, scene.message.unwrap_or("updating…"), small.clone(), palette.dim_text);
+            row_text(ui, rest, -0.01, &shown, BODY_SIZE, palette.dim_text);
+        } else if scene.stale && pane == Pane::Magnitude {
+            row_text(ui, line, -0.01, scene.message.unwrap_or("updating…"), SMALL_SIZE, palette.dim_text);
         }
         if scene.names_curves || !scene.rules.is_empty() {
             names_ui(ui, pane, scene, view, palette);
         }
     }
-    if let Some(frame) = view.phase_transform().map(|transform| *transform.frame()) {
+    if let Some(frame) = view.transform(Pane::Phase).map(|transform| *transform.frame()) {
         let at = pos2(frame.right() + 14.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
         let unit = scene.unit.symbol();
         ui.painter().text(at, Align2::LEFT_CENTER, unit, caption_font(), palette.dim_text);
@@ -480,7 +404,7 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
     if let (Some(strip), Some(readout)) = (places.strip, scene.readout) {
         readout_strip_ui(ui, strip, readout, palette);
     }
-    if let (Some(strip), Some(transform)) = (places.coherence, view.phase_transform()) {
+    if let (Some(strip), Some(transform)) = (places.coherence, view.transform(Pane::Phase)) {
         coherence_ui(ui, strip, scene, transform, palette);
     }
 }

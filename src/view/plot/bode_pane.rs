@@ -1,22 +1,20 @@
-//! One of the two stacked plots: axes, band, curves and cursor.
+//! One of the two stacked plots: axes, band, curves, labelled lines across and cursor.
 
 use egui::{
-    Align2, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui,
-    UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Color32, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape, Stroke, StrokeKind,
+    Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
-use egui_plot::{Axis, LineStyle, PlotPoint, PlotTransform, PlotUi, Span, VLine};
+use egui_plot::{Axis, FilledArea, LineStyle, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span, VLine};
+pub use gdcm_files::figure::{BodeBand, Level, ReferenceKind, ReferenceLine};
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;
-use super::bode::{BodeScene, InvalidRegion};
+use super::bode::{BodeEvent, BodeScene, InvalidRegion};
 use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
-use super::curve::{BodeCurve, CurveId, DrawnItem, Pane, curve_lines};
 use super::curve_style::Role;
-use super::drawn_curves::{DrawnCurves, Pixel};
-use super::navigation::{Turn, plot_keys, turned};
-use super::picking::drawn_box_ui;
-use super::rule::{draw_band, rules_ui, strips_ui};
+use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, Pixel, curve_lines};
+use super::navigation::{Turn, drawn_box_ui, plot_keys, turned};
 use crate::view::controls::elided;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
@@ -275,20 +273,6 @@ const GRAB_RADIUS: f32 = 4.0;
 /// Least ratio of the ends: a band is never empty.
 const LEAST_RATIO: f64 = 1.05;
 
-/// What dragging did to the band in this frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum BandChange {
-    /// An end is being dragged: the band is to be this \[rad/s\].
-    Dragged {
-        /// Lower end.
-        min: f64,
-        /// Upper end.
-        max: f64,
-    },
-    /// The end was let go.
-    Released,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum End {
     Lower,
@@ -319,15 +303,16 @@ impl End {
     }
 }
 
-/// Draws both ends of `band` over a plot and lets them be dragged. `place` tells the panes apart.
+/// Draws both ends of the band over a pane and lets them be dragged.
 pub(super) fn band_handles_ui(
     ui: &Ui,
-    place: &str,
-    band: (f64, f64),
-    transform: &PlotTransform,
-    unit: FrequencyUnit,
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    view: &BodeView,
     palette: &Palette,
-) -> Option<BandChange> {
+) -> Option<BodeEvent> {
+    let (transform, place) = (view.transform(pane)?, scene.quantity.place(pane));
+    let (band, unit) = (scene.band, scene.unit);
     let mut change = None;
     for end in [End::Lower, End::Upper] {
         let x = transform.position_from_point_x(end.of(band).log10());
@@ -336,7 +321,7 @@ pub(super) fn band_handles_ui(
             continue;
         }
         let strip = Rect::from_x_y_ranges(x - GRAB_RADIUS..=x + GRAB_RADIUS, frame.y_range()).intersect(frame);
-        let response = ui.interact(strip, ui.scope_id().with((place, end.name())), Sense::drag());
+        let response = ui.interact(strip, ui.scope_id().with((place.as_str(), end.name())), Sense::drag());
         let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
         response
             .widget_info(|| WidgetInfo::slider(true, unit.of_omega(end.of(band)), format!("{}, {place}", end.name())));
@@ -347,9 +332,9 @@ pub(super) fn band_handles_ui(
             let x = pointer.x.clamp(frame.left(), frame.right());
             let omega = 10f64.powf(transform.value_from_position(pos2(x, frame.center().y)).x);
             let (min, max) = end.moved(band, omega);
-            change = Some(BandChange::Dragged { min, max });
+            change = Some(BodeEvent::BandDragged { min, max });
         } else if response.drag_stopped() {
-            change = Some(BandChange::Released);
+            change = Some(BodeEvent::BandReleased);
         }
     }
     change
@@ -382,9 +367,84 @@ fn paint(
     painter.galley(place.min + vec2(5.0, 1.0), galley, palette.text);
 }
 
+/// Draws the rules of a pane into the plot that was drawn as `transform` says.
+pub(super) fn rules_ui(ui: &Ui, rules: &[ReferenceLine], pane: Pane, transform: &PlotTransform, palette: &Palette) {
+    let painter = ui.painter().with_clip_rect(transform.frame().shrink(1.0));
+    let mut shapes = Vec::new();
+    for rule in rules.iter().filter(|rule| rule.pane == pane) {
+        palette.curve_style(rule.kind.line()).add_shapes(path(&rule.level, transform), &mut shapes);
+    }
+    painter.extend(shapes);
+}
+
+/// The labels of the rules of a pane, each at the height where its line leaves the plot, what is said besides below it.
+pub(super) fn rule_ends(
+    rules: &[ReferenceLine],
+    pane: Pane,
+    transform: &PlotTransform,
+    palette: &Palette,
+) -> Vec<(f32, String, Color32)> {
+    let frame = *transform.frame();
+    let mut ends = Vec::new();
+    for rule in rules.iter().filter(|rule| rule.pane == pane) {
+        let path = path(&rule.level, transform);
+        let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else { continue };
+        let color = palette.name_of(palette.curve_style(rule.kind.line()).color.to_opaque());
+        ends.push((end.y, rule.label.clone(), color));
+        let note = rule.note.trim_start_matches([',', ':', ' ']);
+        ends.extend((!note.is_empty()).then(|| (end.y + 0.1, note.to_owned(), palette.dim_text)));
+    }
+    ends
+}
+
+fn path(level: &Level, transform: &PlotTransform) -> Vec<egui::Pos2> {
+    let points = level.points(transform.bounds().min()[0], transform.bounds().max()[0]);
+    let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
+    // Far outside the frame a line is not drawn; so long a way in dashes would take its time.
+    let frame = transform.frame();
+    let is_near = |at: &egui::Pos2| (at.y - frame.center().y).abs() < 2.0 * frame.height();
+    points.into_iter().map(position).filter(is_near).collect()
+}
+
+/// Draws the frequencies of `ranges` \[rad/s\] as strips along the lower edge of a plot.
+pub(super) fn strips_ui(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransform, palette: &Palette) {
+    let frame = *transform.frame();
+    let x = |omega: f64| transform.position_from_point_x(omega.log10());
+    for (from, to) in ranges {
+        let strip = Rect::from_x_y_ranges(x(*from)..=x(*to), frame.bottom() - STRIP_HEIGHT..=frame.bottom());
+        ui.painter().with_clip_rect(frame).rect_filled(strip.shrink2(vec2(0.0, 1.0)), 0.0, palette.warning);
+    }
+}
+
+/// Height of a strip along the lower edge \[pt\].
+const STRIP_HEIGHT: f32 = 5.0;
+
+/// Draws what is in `view` of the band in a pane, stretch by stretch: where a value is not finite, or a wrapped phase jumps, it has
+/// a gap.
+pub(super) fn draw_band(plot: &mut PlotUi<'_>, band: &BodeBand, pane: Pane, view: &PlotBounds, palette: &Palette) {
+    let values = match pane {
+        Pane::Magnitude => &band.magnitude_db,
+        Pane::Phase => &band.phase_deg,
+    };
+    let points: Vec<[f64; 3]> =
+        band.omega.iter().zip(values).map(|(omega, [lower, upper])| [omega.log10(), *lower, *upper]).collect();
+    for run in points.chunk_by(|from, to| is_in_view(from, to, view)).filter(|run| run.len() > 1) {
+        let column = |index: usize| run.iter().map(|point| point[index]).collect::<Vec<f64>>();
+        let fill = palette.identified.gamma_multiply(0.22);
+        plot.add(FilledArea::new("", &column(0), &column(1), &column(2)).fill_color(fill).allow_hover(false));
+    }
+}
+
+/// Whether something of the band between two points, each a place with its lower and its upper value, is in view.
+fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
+    let ([min_x, min_y], [max_x, max_y]) = (view.min(), view.max());
+    let is_finite = from.iter().chain(to).all(|value| value.is_finite());
+    is_finite && to[0] >= min_x && from[0] <= max_x && from[2].max(to[2]) >= min_y && from[1].min(to[1]) <= max_y
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::bode_pane::*;
+    use super::*;
 
     #[test]
     fn an_end_never_passes_the_other() {
@@ -394,5 +454,16 @@ mod tests {
         assert!(min < max);
         let (min, max) = End::Upper.moved((0.5, 12.0), 0.1);
         assert!(min < max);
+    }
+
+    #[test]
+    fn a_stretch_counts_where_it_reaches_into_the_view() {
+        let view = PlotBounds::from_min_max([0.0, 0.0], [1.0, 10.0]);
+        let is_seen = |from, to| is_in_view(&from, &to, &view);
+        assert!(is_seen([0.2, 1.0, 2.0], [0.3, 1.0, 2.0]));
+        assert!(is_seen([-1.0, -5.0, -3.0], [2.0, 12.0, 15.0]), "it may pass through");
+        assert!(!is_seen([-2.0, 1.0, 2.0], [-1.0, 1.0, 2.0]) && !is_seen([2.0, 1.0, 2.0], [3.0, 1.0, 2.0]));
+        assert!(!is_seen([0.2, 11.0, 12.0], [0.3, 11.0, 12.0]) && !is_seen([0.2, -2.0, -1.0], [0.3, -2.0, -1.0]));
+        assert!(!is_seen([0.2, f64::NAN, 2.0], [0.3, 1.0, 2.0]), "there is a gap");
     }
 }

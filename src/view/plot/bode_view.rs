@@ -1,17 +1,14 @@
 //! What the Bode plot remembers between frames: the part in view, and where things are on the screen.
 
-use egui::{Pos2, Rect, Vec2, vec2};
+use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
-use gdcm_files::figure::Range;
+use gdcm_files::figure::{Range, fitted_values};
 
 use super::axis_strip::{LimitsForm, PlotAxis};
-use super::bode::BodeScene;
+use super::bode::{BodeScene, PANES};
 use super::cached_raster::CachedRaster;
-use gdcm_files::figure::fitted_values;
-
-use super::curve::{BodeCurve, CurveId, Pane};
 use super::curve_menu::MenuSubject;
-use super::drawn_curves::DrawnCurves;
+use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane};
 use super::navigation::ViewedRange;
 use super::quantity::ValueUnit;
 
@@ -31,9 +28,10 @@ pub struct BodeView {
     log_omega: ViewedRange,
     /// Magnitudes \[dB\] and phases \[deg\].
     values: [ViewedRange; 2],
-    pub(super) hovered: Option<CurveId>,
+    /// The curve under the pointer.
+    pub hovered: Option<CurveId>,
     /// The frequency under the pointer \[rad/s\].
-    pub(super) pointed_omega: Option<f64>,
+    pub pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
     /// What the menu that is open, or was last, was asked for.
     pub(super) menu_subject: Option<MenuSubject>,
@@ -119,16 +117,6 @@ impl BodeView {
         }
     }
 
-    /// The curve under the pointer.
-    pub fn hovered(&self) -> Option<&CurveId> {
-        self.hovered.as_ref()
-    }
-
-    /// The frequency under the pointer \[rad/s\].
-    pub fn pointed_omega(&self) -> Option<f64> {
-        self.pointed_omega
-    }
-
     /// Shows the frequencies that another plot shows.
     pub fn share_frequencies(&mut self, other: &Self) {
         self.log_omega = other.log_omega;
@@ -158,17 +146,7 @@ impl BodeView {
         self.values[pane as usize].range()
     }
 
-    /// Where the magnitude plot was drawn last: x is `log10 omega`, y is in dB.
-    pub fn magnitude_transform(&self) -> Option<&PlotTransform> {
-        self.transform(Pane::Magnitude)
-    }
-
-    /// Where the phase plot was drawn last: x is `log10 omega`, y is in degrees.
-    pub fn phase_transform(&self) -> Option<&PlotTransform> {
-        self.transform(Pane::Phase)
-    }
-
-    /// Where a pane was drawn last.
+    /// Where a pane was drawn last: x is `log10 omega`, y is in dB or in degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
@@ -202,24 +180,12 @@ impl BodeView {
         self.values[pane as usize].zoom(value_factor, fixed.y);
     }
 
-    /// What is in view of an axis.
-    pub(super) fn axis(&self, axis: PlotAxis) -> Range {
-        match axis {
-            PlotAxis::Frequency => self.log_omega.range(),
-            PlotAxis::Values(pane) => self.value_range(pane),
-        }
-    }
-
-    fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
+    /// What is in view of an axis, and what can be.
+    pub(super) fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
         match axis {
             PlotAxis::Frequency => &mut self.log_omega,
             PlotAxis::Values(pane) => &mut self.values[pane as usize],
         }
-    }
-
-    /// Shows a part of an axis that the engineer wants to see.
-    pub(super) fn choose(&mut self, axis: PlotAxis, range: Range) {
-        self.axis_mut(axis).choose(range);
     }
 
     /// Shows all of the curves on one axis at the next frame.
@@ -229,18 +195,6 @@ impl BodeView {
             PlotAxis::Frequency => self.must_fit_frequencies = true,
             PlotAxis::Values(_) => self.must_fit_values = true,
         }
-    }
-
-    /// Moves what a pane shows of one of its axes by so much on the screen.
-    pub(super) fn pan_axis(&mut self, axis: PlotAxis, pane: Pane, by: Vec2) {
-        let by = if axis == PlotAxis::Frequency { vec2(by.x, 0.0) } else { vec2(0.0, by.y) };
-        self.pan(pane, by);
-    }
-
-    /// Looks `factor` times closer at one axis of a pane, with what is beside `pointer` staying where it is.
-    pub(super) fn zoom_axis(&mut self, axis: PlotAxis, pane: Pane, pointer: Pos2, factor: f64) {
-        let (frequencies, values) = if axis == PlotAxis::Frequency { (factor, 1.0) } else { (1.0, factor) };
-        self.zoom(pane, pointer, frequencies, values);
     }
 
     /// Shows what lies in `area` of the screen.
@@ -266,8 +220,8 @@ impl BodeView {
             self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
-            for pane in [Pane::Magnitude, Pane::Phase] {
-                let within = (scene.band.0, scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to));
+            let within = (scene.band.0, scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to));
+            for pane in PANES {
                 if let Some(values) = fitted_values(scene.curves, pane, within) {
                     self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
                 }

@@ -143,9 +143,9 @@ impl StillImage {
 #[cfg(test)]
 mod tests {
     use egui::{RawInput, vec2};
+    use gdcm_files::figure::Dash;
 
     use super::*;
-    use gdcm_files::figure::Dash;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {
         let look = CurveStyle { color: Color32::RED, width: 2.0, dash: Dash::Solid, length: 0.0 };

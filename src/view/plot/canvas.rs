@@ -1,8 +1,9 @@
-//! The screen as a canvas for what figures are drawn of on paper: the same shapes, larger, in the colours of the theme.
+//! The screen as a canvas for what figures are drawn of on paper: the same shapes, larger, in the colours of the theme; and what the marks of a
+//! figure stand for, in one line above its plots.
 
 use egui::epaint::TextShape;
-use egui::{FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
-use gdcm_files::figure::{Area, Shape as Drawn, Stroke as Line, Text};
+use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
+use gdcm_files::figure::{Area, Figure, Sample, Shape as Drawn, Stroke as Line, Text, dot_shapes};
 
 use crate::view::palette::Palette;
 
@@ -115,4 +116,32 @@ impl Canvas<'_> {
             self.painter.galley(at - vec2(before, base), galley, color);
         }
     }
+}
+
+/// Size of a sample \[pt\].
+const SAMPLE: egui::Vec2 = vec2(18.0, 14.0);
+
+/// A sample and a name for each key among the marks of a figure, as the legend on paper has them.
+pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
+        for entry in figure.legend() {
+            let (rect, _) = ui.allocate_exact_size(SAMPLE, Sense::hover());
+            match entry.sample {
+                Sample::Dot { shape, color, filled } => {
+                    let canvas = Canvas { painter: ui.painter(), origin: rect.center(), palette };
+                    canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
+                }
+                Sample::Line(stroke) => {
+                    let ends = [rect.left(), rect.right()].map(|x| pos2(x, rect.center().y));
+                    let mut shapes = Vec::new();
+                    palette.curve_style(stroke).in_miniature().add_shapes(ends.to_vec(), &mut shapes);
+                    ui.painter().extend(shapes);
+                }
+                Sample::Ground(color) => drop(ui.painter().rect_filled(rect.shrink(2.0), 2.0, palette.color(color))),
+            }
+            ui.label(palette.small(entry.text));
+            ui.add_space(10.0);
+        }
+    });
 }

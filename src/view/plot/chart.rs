@@ -32,9 +32,10 @@ const TOLERANCE: f64 = 0.1;
 const MOST_PIXELS: f64 = 10_000.0;
 
 /// What the horizontal axis of a chart is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChartAxis {
     /// Values as they are.
+    #[default]
     Linear,
     /// Angular frequencies \[rad/s\], drawn by their logarithm, read in this unit.
     Frequency(FrequencyUnit),
@@ -96,7 +97,7 @@ pub struct ChartSpan {
 }
 
 /// What a chart shows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
     /// Its title, which is its name too.
     pub title: &'a str,
@@ -144,22 +145,7 @@ pub struct ChartImage {
 impl<'a> Chart<'a> {
     /// An empty chart.
     pub fn new(title: &'a str, across: ChartAxis, across_label: &'a str, value_label: &'a str) -> Self {
-        Self {
-            title,
-            notes: Vec::new(),
-            across,
-            across_label,
-            value_label,
-            fits_values: false,
-            group: None,
-            spans: Vec::new(),
-            bands: Vec::new(),
-            lines: Vec::new(),
-            marks: Vec::new(),
-            verticals: Vec::new(),
-            image: None,
-            chooses: false,
-        }
+        Self { title, across, across_label, value_label, ..Self::default() }
     }
 }
 
@@ -296,13 +282,8 @@ fn empty_chart<'a>(id: Id, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> 
         ChartAxis::Linear => Ticks::Decimal(TICK_GAP),
         ChartAxis::Frequency(unit) => Ticks::Frequency(unit),
     };
-    let plot = plot.x_grid_spacer(ticks.spacer()).custom_x_axes(vec![axis_hints(
-        Axis::X,
-        chart.across_label,
-        height,
-        palette,
-        ticks,
-    )]);
+    let across = axis_hints(Axis::X, chart.across_label, height, palette, ticks);
+    let plot = plot.x_grid_spacer(ticks.spacer()).custom_x_axes(vec![across]);
     match chart.group {
         Some(group) => plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false)),
         None => plot,

@@ -7,9 +7,10 @@ use gdcm_core::study::ExplainTarget;
 
 use super::bode::{BodeEvent, BodeScene};
 use super::bode_view::BodeView;
-use super::curve::{BodeCurve, CurveId};
 use super::curve_style::Role;
+use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
+use crate::view::CurveCommand;
 use crate::view::explanation::QUESTION;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
@@ -149,12 +150,12 @@ fn ground_menu_ui(
         view.request_fit();
     }
     if entry(ui, "Mark frequency", "Leave a cursor at this frequency; two show what changes between them") {
-        events.push(BodeEvent::CursorPinned(subject.omega));
+        events.push(BodeEvent::Display(CurveCommand::PinCursor(subject.omega)));
     }
     if !(scene.pinned.is_empty() && scene.crossings.is_empty())
         && entry(ui, "Remove marks", "Take the marks of frequencies away")
     {
-        events.push(BodeEvent::CursorsUnpinned);
+        events.push(BodeEvent::Display(CurveCommand::UnpinCursors));
     }
 }
 

@@ -18,7 +18,7 @@ use super::axes::{
 };
 use super::canvas::{Canvas, LETTERS_PT, area};
 use super::curve_menu::{NamedFigure, Questions};
-use super::navigation::turned;
+use super::navigation::{nearest_dot, turned};
 use super::tiles::{Tiles, tiles_ui};
 use crate::view::palette::{Palette, SMALL_SIZE, medium};
 
@@ -36,8 +36,6 @@ const UNIT_MARGIN: f32 = 14.0;
 const TICK_GAP: f64 = 26.0;
 /// The same in a low plot \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// How far from a dot the pointer may be to mean it \[pt\].
-const PICK_RADIUS: f32 = 10.0;
 /// Radius of the ring around what is in focus, or pointed at \[pt\].
 const RING: f32 = 8.0;
 /// How much larger a dot is while something points at what it is of.
@@ -68,6 +66,12 @@ pub trait FigureWords {
     }
 }
 
+impl FigureWords for Figure {
+    fn plot(&self, plot: usize) -> String {
+        self.plots[plot].title.clone()
+    }
+}
+
 /// A figure, and what is needed to work with it on the screen. The panels of a plot stand above one another; what can be pointed at stands
 /// in the first.
 pub struct FigureScene<'a> {
@@ -93,6 +97,21 @@ pub struct FigureScene<'a> {
     pub accented: Option<usize>,
     /// What the plots say, and the number by which they know the first one here.
     pub words: (&'a dyn FigureWords, usize),
+}
+
+impl<'a> FigureScene<'a> {
+    /// A figure that stands still, nothing of it in focus.
+    pub fn new(
+        name: &'static str,
+        figure: &'a Figure,
+        least: Vec2,
+        message: &'a str,
+        words: &'a dyn FigureWords,
+    ) -> Self {
+        let (selected, highlighted, columns, accented) = (None, None, &[][..], None);
+        let (zooms, is_compact, words) = (false, false, (words, 0));
+        Self { name, figure, selected, highlighted, columns, zooms, least, message, is_compact, accented, words }
+    }
 }
 
 /// What the engineer did in a figure.
@@ -303,7 +322,7 @@ fn plot_ui(
     if scene.is_compact && has_values {
         plot_rect.min.x -= VALUE_AXIS_WIDTH;
     }
-    let [x, y] = kept.ranges.unwrap_or_else(|| [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)]);
+    let [x, y] = kept.ranges.unwrap_or_else(|| whole(panel));
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
         let is_last = panel_number + 1 == panels.len();
         frame(ui, (id, plot_rect.size()), (panel, is_last), (scene, has_values), palette).show(ui, |plot| {
@@ -337,7 +356,7 @@ fn plot_ui(
         }
     }
     if scene.zooms {
-        let whole = [places(panel, panel.shown(Along::X)), panel.shown(Along::Y)];
+        let whole = whole(panel);
         kept.navigate(&response, pointed.is_some(), (whole, ends(panel, whole)));
     }
     (response, pointed)
@@ -367,18 +386,6 @@ fn title_ui(
     }
 }
 
-/// The nearest dot that is one of something; of equally near ones the one on top, which is drawn last.
-fn nearest_dot(panel: &Panel, transform: &PlotTransform, pointer: Pos2) -> Option<(MarkId, [f64; 2])> {
-    let mut near: Option<(f32, (&MarkId, [f64; 2]))> = None;
-    for (dot, id) in panel.dots().filter_map(|dot| Some((dot, dot.id.as_ref()?))) {
-        let distance = transform.position_from_point(&PlotPoint::new(dot.x, dot.y)).distance(pointer);
-        if distance <= PICK_RADIUS && near.is_none_or(|(least, _)| distance <= least) {
-            near = Some((distance, (id, [dot.x, dot.y])));
-        }
-    }
-    near.map(|(_, (id, at))| (id.clone(), at))
-}
-
 impl PlotView {
     /// Draws what stands in the frame, anew only where it changed; what is meant by the pointer stands out.
     fn paint(
@@ -401,8 +408,8 @@ impl PlotView {
         }
         let painter = ui.painter().with_clip_rect(frame.expand(RING).intersect(ui.clip_rect()));
         for (column, id) in scene.columns.iter().enumerate() {
-            let strength = match (scene.selected.as_ref() == Some(id), pointed.is_some_and(|at| at[0] == column as f64))
-            {
+            let is_pointed = pointed.is_some_and(|at| at[0] == column as f64);
+            let strength = match (scene.selected.as_ref() == Some(id), is_pointed) {
                 (true, _) => 0.6,
                 (false, true) => 0.35,
                 (false, false) => continue,
@@ -472,11 +479,12 @@ fn ends(panel: &Panel, [across, values]: [Range; 2]) -> [Range; 2] {
     [across, beyond(values)]
 }
 
-/// Places along the horizontal axis of the screen, which has logarithms where that of the panel is logarithmic.
-fn places(panel: &Panel, range: Range) -> Range {
+/// All that a panel shows; the horizontal axis of the screen has logarithms where that of the panel is logarithmic.
+fn whole(panel: &Panel) -> [Range; 2] {
+    let [x, y] = [Along::X, Along::Y].map(|along| panel.shown(along));
     match panel.x.scale {
-        Scale::Logarithmic => Range::new(range.min.log10(), range.max.log10()),
-        Scale::Linear | Scale::Degrees => range,
+        Scale::Logarithmic => [Range::new(x.min.log10(), x.max.log10()), y],
+        Scale::Linear | Scale::Degrees => [x, y],
     }
 }
 

@@ -4,8 +4,10 @@ use std::collections::BTreeSet;
 
 use egui::{Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
-use super::curve::BodeCurve;
+use super::bode::BodeEvent;
 use super::curve_style::{CurveStyle, Role};
+use super::drawn_curves::BodeCurve;
+use crate::view::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// Height of a chip, and of a line of them \[pt\].
@@ -34,7 +36,7 @@ pub(super) struct RoleChip {
 
 impl RoleChip {
     /// Leaves the name of a single model or variant out of what the chip says, and shortens the longest words.
-    pub(super) fn shorten(&mut self) {
+    fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
             Role::Variant => self.role.name().clone_into(&mut self.text),
@@ -45,7 +47,7 @@ impl RoleChip {
 }
 
 /// One chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
-pub(super) fn role_chips(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette: &Palette) -> Vec<RoleChip> {
+pub(super) fn role_chips(curves: &[BodeCurve], hidden: Option<&BTreeSet<Role>>, palette: &Palette) -> Vec<RoleChip> {
     let of_role = |role: Role| {
         let members: Vec<&BodeCurve> = curves.iter().filter(|curve| curve.role.shown(curve.rejected) == role).collect();
         let first = members.first()?;
@@ -56,7 +58,7 @@ pub(super) fn role_chips(curves: &[BodeCurve], hidden: &BTreeSet<Role>, palette:
             role,
             text: text(role, &members),
             look,
-            shown: !hidden.contains(&role),
+            shown: !hidden.is_some_and(|hidden| hidden.contains(&role)),
             lit: members.iter().any(|curve| curve.highlighted),
         })
     };
@@ -87,26 +89,11 @@ pub struct Chip {
     pub hint: String,
 }
 
-/// What was done with the chips.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum ChipEvent {
-    /// The curves of a role are to be hidden, or shown.
-    Toggled(Role),
-    /// Those of this role alone are to be shown.
-    Alone(Role),
-    /// They are to be drawn above all others.
-    Raised(Role),
-    /// The bands of the identified models are to be drawn, or not.
-    Bands(bool),
-    /// What holds for the plot is to end: its index.
-    Clicked(usize),
-}
-
 /// All chips of a plot.
 pub(super) struct Chips<'a> {
     /// What tells them from those of other plots.
     pub(super) plot: &'a str,
-    pub(super) roles: &'a [RoleChip],
+    pub(super) roles: Vec<RoleChip>,
     /// Whether bands are drawn; none where there are no bands.
     pub(super) bands: Option<bool>,
     pub(super) states: &'a [Chip],
@@ -115,6 +102,12 @@ pub(super) struct Chips<'a> {
 }
 
 impl Chips<'_> {
+    /// Shortens samples and words.
+    pub(super) fn tighten(&mut self) {
+        self.is_tight = true;
+        self.roles.iter_mut().for_each(RoleChip::shorten);
+    }
+
     /// How wide all of them are beside one another \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let text = |text: &str| {
@@ -128,10 +121,10 @@ impl Chips<'_> {
     }
 
     /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
-    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<ChipEvent>) {
+    pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<BodeEvent>) {
         let sample = SAMPLES[usize::from(self.is_tight)];
         let mut row = Row { area, corner: area.min, sample, event: None };
-        for chip in self.roles {
+        for chip in &self.roles {
             let name = format!("Show {}{}", chip.role.name(), self.plot);
             let sample = Some((chip.look, chip.shown));
             let response = row.chip_ui(ui, (&chip.text, &name), (sample, chip.lit), palette);
@@ -139,11 +132,11 @@ impl Chips<'_> {
             let hint = format!("{hint} · Alt+click: alone · Shift+click: in front");
             if response.on_hover_text(hint).clicked() {
                 let modifiers = ui.input(|input| input.modifiers);
-                row.event = Some(match (modifiers.alt, modifiers.shift) {
-                    (true, _) => ChipEvent::Alone(chip.role),
-                    (_, true) => ChipEvent::Raised(chip.role),
-                    _ => ChipEvent::Toggled(chip.role),
-                });
+                row.event = Some(BodeEvent::Display(match (modifiers.alt, modifiers.shift) {
+                    (true, _) => CurveCommand::ShowRoleAlone(chip.role),
+                    (_, true) => CurveCommand::RaiseRole(chip.role),
+                    _ => CurveCommand::ToggleRole(chip.role),
+                }));
             }
         }
         if let Some(shown) = self.bands {
@@ -151,13 +144,13 @@ impl Chips<'_> {
             let name = format!("Show the band of 95 %{}", self.plot);
             let response = row.chip_ui(ui, (self.bands_text(), &name), (Some((style, shown)), false), palette);
             if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
-                row.event = Some(ChipEvent::Bands(!shown));
+                row.event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
             }
         }
         for (index, chip) in self.states.iter().enumerate() {
             let name = format!("{}{}", chip.text, self.plot);
             if row.chip_ui(ui, (&chip.text, &name), (None, false), palette).on_hover_text(&chip.hint).clicked() {
-                row.event = Some(ChipEvent::Clicked(index));
+                row.event = Some(BodeEvent::ChipClicked(index));
             }
         }
         let is_empty = self.roles.is_empty() && self.states.is_empty();
@@ -180,7 +173,7 @@ struct Row {
     corner: egui::Pos2,
     /// Length of a sample \[pt\].
     sample: f32,
-    event: Option<ChipEvent>,
+    event: Option<BodeEvent>,
 }
 
 impl Row {
@@ -226,10 +219,8 @@ impl Row {
             None => palette.selected,
         };
         if is_hidden {
-            let mut outline = Vec::new();
             let path = rounded(place.shrink(0.5), radius);
-            outline.extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
-            ui.painter().extend(outline);
+            ui.painter().extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
         } else {
             ui.painter().rect(place, radius, fill, line, StrokeKind::Inside);
         }

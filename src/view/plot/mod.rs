@@ -8,36 +8,32 @@ mod bode_view;
 mod cached_raster;
 mod canvas;
 mod chart;
-mod curve;
 mod curve_menu;
 mod curve_style;
 mod drawn_curves;
-mod figure_legend;
 mod figure_view;
 mod legend;
 mod navigation;
 mod overview;
-mod picking;
 mod quantity;
 mod readout;
-mod rule;
-mod sketch;
-#[cfg(test)]
-mod tests;
 mod tiles;
 
 pub use gdcm_files::figure::{Across, FrequencyUnit, Measure, Range, decimals};
 
 pub use bode::*;
+pub use bode_pane::*;
 pub use bode_view::*;
+pub use canvas::*;
 pub use chart::*;
-pub use curve::*;
 pub use curve_menu::*;
 pub use curve_style::*;
-pub use figure_legend::*;
+pub use drawn_curves::*;
 pub use figure_view::*;
 pub use legend::*;
 pub use overview::*;
 pub use quantity::*;
 pub use readout::*;
-pub use rule::*;
+
+#[cfg(test)]
+mod tests;

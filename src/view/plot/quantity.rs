@@ -5,7 +5,7 @@ pub use gdcm_files::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 use gdcm_files::figure::{Range, compact, decimals};
 
 use super::axes::{Ticks, VERTICAL_TICK_GAP};
-use super::curve::Pane;
+use super::drawn_curves::Pane;
 
 /// What the two stacked panes show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +38,12 @@ pub enum ResponsePlace {
     EveryCondition,
     /// That of a model that was found in a file.
     FoundModel,
+}
+
+impl Default for BodeQuantity<'_> {
+    fn default() -> Self {
+        Self::RESPONSE
+    }
 }
 
 impl BodeQuantity<'_> {
@@ -104,13 +110,7 @@ impl BodeQuantity<'_> {
     /// What the numbers of a curve in a pane are, with the unit that they are drawn in.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
-            Self::Response { phase, .. } => Self::Response {
-                magnitude: MagnitudeUnit::Decibel,
-                phase,
-                ratio_unit: "",
-                place: ResponsePlace::Condition,
-            }
-            .axis_label(pane),
+            Self::Response { .. } => Self::RESPONSE.axis_label(pane),
             Self::Error { .. } => self.axis_label(pane),
         }
     }

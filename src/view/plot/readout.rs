@@ -6,10 +6,10 @@ use gdcm_files::figure::decimals;
 
 use super::axes::FrequencyUnit;
 use super::bode_view::BodeView;
-use super::curve::{BodeCurve, Pane};
 use super::curve_style::Role;
+use super::drawn_curves::{BodeCurve, Pane};
 use super::quantity::BodeQuantity;
-use crate::view::controls::{elided, painted_text};
+use crate::view::controls::{elided, painted_text, row_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
@@ -40,8 +40,8 @@ pub fn pointed_words(
     curves: &[BodeCurve],
     (quantity, unit): (BodeQuantity<'_>, FrequencyUnit),
 ) -> Option<String> {
-    let curve = curves.iter().find(|curve| Some(&curve.id) == view.hovered())?;
-    let omega = view.pointed_omega()?;
+    let curve = curves.iter().find(|curve| Some(&curve.id) == view.hovered.as_ref())?;
+    let omega = view.pointed_omega?;
     let detail = if curve.detail.is_empty() { String::new() } else { format!(" · {}", curve.detail) };
     Some(format!("{} · {}{detail}", unit.readout(omega), value_text(quantity, curve, omega)))
 }
@@ -98,16 +98,9 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
         strip.with_min_x(left).with_max_x(right).shrink2(vec2(8.0, 3.0))
     };
     let lines = |rect: Rect| [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
-    let small = FontId::proportional(SMALL_SIZE);
     let [upper, lower] = lines(column(0));
-    painted_text(
-        ui,
-        upper,
-        0.0,
-        &elided(ui, &readout.heading, upper.width(), SMALL_SIZE),
-        small.clone(),
-        palette.dim_text,
-    );
+    let heading = elided(ui, &readout.heading, upper.width(), SMALL_SIZE);
+    row_text(ui, upper, 0.0, &heading, SMALL_SIZE, palette.dim_text);
     painted_text(ui, lower, 0.0, &readout.frequency, medium(BODY_SIZE), palette.text);
     for (place, cell) in cells.iter().enumerate() {
         let [upper, lower] = lines(column(place + 1));
@@ -127,7 +120,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
             Some((first, _)) if shown != cell.name => elided(ui, first, upper.width() - from, SMALL_SIZE),
             _ => shown,
         };
-        painted_text(ui, upper, from, &name, small.clone(), palette.dim_text);
+        row_text(ui, upper, from, &name, SMALL_SIZE, palette.dim_text);
         let color = |warns| if warns { palette.warning } else { palette.text };
         let font = if cell.role.is_none() { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
         painted_text(ui, lower, 0.0, &cell.values[0], font.clone(), color(cell.warns[0]));
@@ -141,7 +134,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
 mod tests {
     use super::super::curve_style::Role;
     use super::*;
-    use crate::view::plot::curve::numbered;
+    use crate::view::plot::tests::numbered;
 
     #[test]
     fn a_readout_names_the_curve_and_its_values() {

@@ -7,7 +7,7 @@ use gdcm_files::figure::decimals;
 use super::{ConditionRecords, Page};
 use crate::view::Command;
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableLook, table_ui};
+use crate::view::tables::{Sorting, TableLook, table_ui};
 
 /// The conditions that have records, one below the other; a heading sorts them, a click on one shows it.
 pub(super) fn condition_table_ui(ui: &mut Ui, page: Page<'_>, sorting: &mut Sorting, commands: &mut Vec<Command>) {

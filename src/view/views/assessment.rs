@@ -18,26 +18,18 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, NamedFigure, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_ui};
+use crate::view::tables::{TableLook, table_ui};
 
 /// What is assessed, and how it is shown. Laid out from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.assessed;
     let mut chosen = shown;
-    choice_ui(
-        ui,
-        "Form of the assessment",
-        &mut chosen.as_table,
-        &[(false, "bars", "A bar for each condition"), (true, "table", "Responses down, conditions across")],
-    );
+    let forms = [(false, "bars", "A bar for each condition"), (true, "table", "Responses down, conditions across")];
+    choice_ui(ui, "Form of the assessment", &mut chosen.as_table, &forms);
     if chosen.as_table {
         let parts = [CostPart::Total, CostPart::Magnitude, CostPart::Phase];
-        choice_ui(
-            ui,
-            "Part of J",
-            &mut chosen.part,
-            &parts.map(|part| (part, part.symbol(), "Change of J, or of a part")),
-        );
+        let parts = parts.map(|part| (part, part.symbol(), "Change of J, or of a part"));
+        choice_ui(ui, "Part of J", &mut chosen.part, &parts);
     }
     choices_ui(ui, &mut chosen);
     if chosen != shown {
@@ -98,18 +90,11 @@ pub fn assessment_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, com
     let plots = AssessmentPlots { state, table: &table, pairs: assessed_pairs(state) };
     let ids: Vec<MarkId> = state.dataset().conditions().iter().map(|of| MarkId::Condition(of.id())).collect();
     let figure = plots.pairs.iter().map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
+    let (figure, message) = (Figure::default().plots(figure), "No response of this kind: choose others above");
     let scene = FigureScene {
-        name: "assessment",
-        figure: &Figure::default().plots(figure),
         selected: Some(MarkId::Condition(state.condition().id())),
-        highlighted: None,
         columns: &ids,
-        zooms: false,
-        is_compact: false,
-        accented: None,
-        least: LEAST_PLOT,
-        message: "No response of this kind: choose others above",
-        words: (&plots, 0),
+        ..FigureScene::new("assessment", &figure, LEAST_PLOT, message, &plots)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
         match event {
@@ -186,36 +171,32 @@ impl AssessmentPlots<'_> {
             let color = Color::of(hue).tint(if is_phase { PHASE_PERCENT } else { 100 });
             Bars { name: String::new(), color, width: BAR, bars, feet, beside: 0.0 }
         });
-        let (x, y): (Vec<f64>, Vec<f64>) = found
-            .iter()
-            .flat_map(|(at, change)| [(at - 0.38, change.total()), (at + 0.38, change.total()), (f64::NAN, f64::NAN)])
-            .unzip();
+        let total = |(at, change): &(f64, CostChange)| {
+            [[at - 0.38, change.total()], [at + 0.38, change.total()], [f64::NAN, f64::NAN]]
+        };
+        let totals = Curve::through("ΔJ", Stroke::solid(Color::INK, 1.1), found.iter().flat_map(total));
         let number = |(at, change): &(f64, CostChange)| {
             let (total, by) = (change.total(), MARGINS[1] * range.width());
             let end = ends(change).into_iter().fold(0.0, if total > 0.0 { f64::max } else { f64::min });
             let at = Place::Value { x: *at, y: end + by.copysign(total), upright: false };
             Note { at, text: decimals(total, usize::from(total.abs() < 9.95)) }
         };
-        let left_out: Vec<f64> = self
-            .changes(pair)
-            .enumerate()
-            .filter(|(_, (_, change))| change.is_none())
-            .map(|(at, _)| at as f64)
-            .collect();
+        let is_left_out = |(_, (_, change)): &(usize, (ConditionId, Option<CostChange>))| change.is_none();
+        let left_out: Vec<f64> = self.changes(pair).enumerate().filter(is_left_out).map(|(at, _)| at as f64).collect();
         let ground = Spans {
             name: String::new(),
             color: Color::of(Hue::Rejected).tint(13),
             width: 0.7,
             spans: left_out.iter().map(|at| [*at, range.min, range.max]).collect(),
         };
-        let words = |at: f64| Note {
-            at: Place::Value { x: at, y: range.middle(), upright: true },
-            text: "left out".to_owned(),
+        let words = |x: f64| {
+            let at = Place::Value { x, y: range.middle(), upright: true };
+            Note { at, text: "left out".to_owned() }
         };
         let names = Axis::named("Condition", self.changes(pair).map(|(id, _)| id.to_string()));
         let panel = Panel::new(names, Axis::linear("").showing(Some(range))).with(ground).with_all(bars);
         let panel = panel.with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)));
-        let panel = panel.with(Curve::new("ΔJ", Stroke::solid(Color::INK, 1.1), x, y));
+        let panel = panel.with(totals);
         // The numbers of every bar would lie over one another: the status line has the others.
         let most = found.iter().max_by(|a, b| a.1.total().abs().total_cmp(&b.1.total().abs())).map(|(at, _)| *at);
         let id = self.state.condition().id();

@@ -1,16 +1,22 @@
-//! The focused response, large.
+//! The views of responses over frequency: the focused one, large, what the fit sees of it, the same response in every condition, and every
+//! response of a condition, small.
 
-use egui::Ui;
+use egui::{Align2, Pos2, Rect, Ui, pos2, vec2};
 use gdcm_core::dataset::Pair;
+use gdcm_core::study::{AcrossJob, AcrossRole, Undefined, display_band};
 use gdcm_core::units::{number, ratio_to_db, s_to_ms};
-use gdcm_files::figure::{ConditionSource, decimals, muad_about, uncertainty_bands};
+use gdcm_files::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
 
-use super::frequency::{bode_curves, bode_options, condition_source, frequency_plot_ui};
+use super::View;
+use super::frequency::{bode_curves, bode_options, condition_source, error_curves, frequency_plot_ui, wished};
 use crate::view::command::Command;
-use crate::view::palette::Palette;
+use crate::view::curve_display::CurveCommand;
+use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{
-    BodeBand, BodeCurve, BodeQuantity, BodeScene, InvalidRegion, Pane, PaneNote, ResponsePlace, Role,
+    BodeBand, BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, InvalidRegion, OverviewCell, OverviewEvent,
+    OverviewScene, Pane, PaneNote, PhaseErrorUnit, ResponsePlace, Role, bode_ui, overview_ui, pointed_words,
 };
+use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
@@ -30,8 +36,8 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let band = state.study.settings.band;
     let bands = uncertainty_bands(state.dataset(), pair, &curves);
     let shows_bands = (!bands.is_empty()).then_some(display.shows_bands);
-    let unnoticed = muad_about(&curves, &bode_options(state));
     let options = bode_options(state);
+    let unnoticed = muad_about(&curves, &options);
     let source = condition_source(state);
     let coherence = source.as_ref().map(|source| source.coherence_curves(pair, &options)).unwrap_or_default();
     let least_coherence = source.as_ref().map_or(0.0, ConditionSource::least_coherence);
@@ -120,4 +126,188 @@ fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
 fn unit_words(state: &State, omega: f64) -> String {
     let unit = state.display.unit;
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
+}
+
+/// The errors of the response in focus, of every physics model kept, beside those that the correction leaves.
+pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let pair = state.display.pair;
+    let mut view = std::mem::take(&mut state.display.error);
+    let options = bode_options(state);
+    let curves = error_curves(state, pair, &options);
+    let rules =
+        condition_source(state).map(|source| source.error_references(pair, &options, &curves)).unwrap_or_default();
+    let strips = noticed(&curves, &options);
+    let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
+    let quantity = BodeQuantity::Error { phase: options.phase_error };
+    let band = state.study.settings.band;
+    let grid = state.curves().map(|curves| curves.grid.omega());
+    let scene = BodeScene {
+        quantity,
+        rules: &rules,
+        strips: &strips,
+        omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
+        message: Some(&message),
+        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+    };
+    frequency_plot_ui(ui, state, (scene, &mut view), palette, commands);
+    state.display.bode.share_frequencies(&view);
+    state.display.error = view;
+    state.display.drawn_errors = curves;
+}
+
+/// How differences of phases are read.
+pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let mut unit = state.display.curves.phase_error;
+    let units = [
+        (PhaseErrorUnit::Degree, "Δφ", "Phase differences in degrees"),
+        (PhaseErrorUnit::Millisecond, "Δφ/ω", "The delay [ms] that would make up for each phase difference"),
+    ];
+    choice_ui(ui, "Phase error", &mut unit, &units);
+    if unit != state.display.curves.phase_error {
+        commands.push(CurveCommand::DrawPhaseErrors(unit).into());
+    }
+}
+
+/// What stands where there is no error to draw.
+pub fn error_message(state: &State, pair: Pair) -> String {
+    match state.shown() {
+        Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
+            format!("{} is not compared: {}", state.dataset().pair_name(pair), Undefined::NotCoherent)
+        }
+        Some(shown) if shown.comparison.undefined[pair].is_some() => {
+            let name = state.dataset().pair_name(pair);
+            format!("{name} is not compared: one of the representatives has no such response in the band")
+        }
+        _ => state.curves_message().unwrap_or("Nothing to compare in the band").to_owned(),
+    }
+}
+
+/// Steps of the key of airspeeds.
+const KEY_STEPS: u8 = 24;
+const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
+
+/// Which model of each condition, and what the colours mean. Laid out from right to left.
+pub fn across_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let mut role = state.display.across_role;
+    let roles = AcrossRole::ALL.map(|role| (role, role.name(), "The model of each condition that is drawn"));
+    choice_ui(ui, "Model of each condition", &mut role, &roles);
+    if role != state.display.across_role {
+        commands.push(Command::ShowAcross(role));
+    }
+    let (least, most) = state.dataset().airspeed_range_kt();
+    ui.label(palette.small(format!("{most:.0} kt")));
+    let (rect, _) = ui.allocate_exact_size(KEY_SIZE, egui::Sense::hover());
+    paint_key(ui, rect, palette);
+    ui.label(palette.small(format!("{least:.0} kt")));
+}
+
+/// The colours from the slowest condition to the fastest.
+fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
+    let width = rect.width() / f32::from(KEY_STEPS);
+    for step in 0..KEY_STEPS {
+        let corner = Pos2::new(rect.left() + width * f32::from(step), rect.top());
+        let role = Role::OfAirspeed(step.saturating_mul(u8::MAX / (KEY_STEPS - 1)));
+        let color = palette.role_style(role, false).color;
+        ui.painter().rect_filled(Rect::from_min_size(corner, vec2(width + 0.5, rect.height())), 0.0, color);
+    }
+}
+
+/// Magnitude and phase of the response in focus, of one model of every condition; a click shows a condition.
+pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let curves = across_curves(state);
+    let band = state.study.settings.band;
+    let title = state.dataset().pair_name(state.display.pair);
+    let rect = ui.available_rect_before_wrap();
+    let (quantity, unit) = (BodeQuantity::RESPONSE_OF_EVERY_CONDITION, state.display.unit);
+    let scene = BodeScene {
+        quantity,
+        unit,
+        stale: state.results.is_stale(ui.input(|input| input.time)),
+        message: Some(state.results.absence()),
+        ..BodeScene::of(&title, &curves, (band.min(), band.max()))
+    };
+    for event in bode_ui(ui, &scene, &mut state.display.across, palette) {
+        if let BodeEvent::Clicked(CurveId::Model(id)) = event {
+            commands.push(Command::SelectCondition(id.condition));
+        }
+    }
+    commands.extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
+    let place = pos2(rect.right() - 16.0, rect.top() + 14.0);
+    ui.painter().text(place, Align2::RIGHT_TOP, title, egui::FontId::proportional(SMALL_SIZE), palette.text);
+}
+
+/// Frequencies of each curve.
+const POINTS: usize = 300;
+
+/// The responses that the view needs: one model of each condition.
+pub fn across_job(state: &State) -> AcrossJob {
+    let grid = (display_band(state.study.settings.band), POINTS);
+    AcrossJob::of(&state.study.dataset, state.analysis(), state.display.across_role, grid)
+}
+
+/// The response in focus of one model of each condition; none until their responses are there.
+pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
+    let Some(curves) = state.across().cloned() else {
+        return Vec::new();
+    };
+    let pair = state.display.pair;
+    let mut cached = std::mem::take(&mut state.display.across_shapes);
+    let (made_of, role) = ((state.dataset(), state.analysis()), state.display.across_role);
+    let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
+    for curve in &mut drawn {
+        curve.highlighted = matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
+        curve.detail.push_str(" · click to show the condition");
+    }
+    state.display.across_shapes = cached;
+    drawn
+}
+
+/// Every response of the condition shown; a click brings it into focus.
+pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+    let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
+    let curves: Vec<Vec<BodeCurve>> = pairs
+        .iter()
+        .map(|&pair| bode_curves(state, pair).into_iter().filter(|curve| !curve.hidden).collect())
+        .collect();
+    let cells: Vec<OverviewCell<'_>> = pairs
+        .iter()
+        .zip(&curves)
+        .map(|(&pair, curves)| OverviewCell {
+            pair,
+            curves,
+            constrained: state.study.settings.constrained[pair],
+            selected: pair == state.display.pair,
+            note: cost_note(state, pair),
+        })
+        .collect();
+    let (inputs, outputs) = state.dataset().names_of_channels();
+    let band = state.study.settings.band;
+    let scene = OverviewScene {
+        inputs: &inputs,
+        outputs: &outputs,
+        cells: &cells,
+        band: (band.min(), band.max()),
+        message: Some(state.results.absence()),
+    };
+    for event in overview_ui(ui, &scene, &mut state.display.overview, palette) {
+        match event {
+            OverviewEvent::PairClicked(pair) => {
+                commands.push(Command::FocusPair(pair));
+                commands.push(Command::ShowView(View::Bode));
+            }
+            OverviewEvent::Hovered(CurveId::Model(id)) => commands.push(Command::Hover(id)),
+            OverviewEvent::Told(words) => commands.push(Command::Tell(words)),
+            OverviewEvent::Isolated(CurveId::Model(id)) => commands.push(Command::Isolate(id)),
+            OverviewEvent::Wished(id, wish) => commands.extend(wished(state, id, wish)),
+            OverviewEvent::Hovered(_) | OverviewEvent::Isolated(_) => {}
+        }
+    }
+}
+
+/// "J 75→61": of the physics representative as it is, and of the corrected one with all that is done to it.
+fn cost_note(state: &State, pair: Pair) -> String {
+    let cost = state.shown().and_then(|shown| {
+        shown.before_couplings().representative.cost[pair].zip(shown.cost[pair].map(|change| change.corrected))
+    });
+    cost.map_or(String::new(), |(before, after)| format!("J {:.0}→{:.0}", before.total(), after.total()))
 }

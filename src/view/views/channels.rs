@@ -118,17 +118,9 @@ pub struct GainPlots<'a> {
 impl GainPlots<'_> {
     pub(super) fn scene<'b>(&'b self, name: &'static str, figure: &'b Figure, message: &'b str) -> FigureScene<'b> {
         FigureScene {
-            name,
-            figure,
             selected: Some(MarkId::Condition(self.state.condition().id())),
             highlighted: self.state.display.hovered_condition.map(MarkId::Condition),
-            columns: &[],
-            zooms: false,
-            is_compact: false,
-            accented: None,
-            least: LEAST_PLOT,
-            message,
-            words: (self, 0),
+            ..FigureScene::new(name, figure, LEAST_PLOT, message, self)
         }
     }
 }
@@ -143,17 +135,17 @@ impl FigureWords for GainPlots<'_> {
     fn dot(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else { return None };
         let airspeed_kt = self.state.dataset().condition(*id)?.flight_state().airspeed_kt;
-        let value = self.quantities[plot].measure.text(value);
+        let value = self.quantities[plot].measure().text(value);
         Some(format!("{}, condition {id}: {value} at {airspeed_kt:.0} kt", self.figure.plots[plot].title))
     }
 
     fn pointed(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
         let MarkId::Condition(id) = id else { return None };
         let (condition, analysis) = (self.state.dataset().condition(*id)?, self.state.analysis()?);
-        let (of, airspeed_kt) = (&self.quantities[plot], condition.flight_state().airspeed_kt);
-        let text = |value: f64| of.measure.text(value);
-        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| of.is_scheduled(schedule, self.across));
-        let scheduled = schedule.map(|schedule| format!("scheduled {}", text((of.of)(&schedule.at(airspeed_kt)))));
+        let (of, airspeed_kt) = (self.quantities[plot], condition.flight_state().airspeed_kt);
+        let text = |value: f64| of.measure().text(value);
+        let schedule = of.measure().schedule_of(analysis, self.across);
+        let scheduled = schedule.map(|schedule| format!("scheduled {}", text(of.of(&schedule.at(airspeed_kt)))));
         let bounds = analysis.condition(*id).and_then(|result| of.bounds(result));
         let choice = analysis.study.choice(*id);
         let state = match (choice.held_out, choice.is_in_schedule()) {
@@ -162,11 +154,11 @@ impl FigureWords for GainPlots<'_> {
             (false, true) => None,
         };
         let uncertainty = shown_uncertainty(self.state);
-        let bar = uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar)?, of_all.level)));
+        let bar = uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar())?, of_all.level)));
         let words = [
             Some(format!("condition {id}, {airspeed_kt:.0} kt")),
             Some(format!("{} {}", self.figure.plots[plot].title, text(value))),
-            bar.map(|(bar, level)| bar_words(bar, of.scalar, level)),
+            bar.map(|(bar, level)| bar_words(bar, of.scalar(), level)),
             scheduled,
             bounds.map(|[lower, upper]| format!("bounds {} to {}", text(lower), text(upper))),
             state,
@@ -177,13 +169,15 @@ impl FigureWords for GainPlots<'_> {
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
         let MarkId::Condition(id) = *id else { return Vec::new() };
-        match self.quantities[plot].scalar {
-            Scalar::NetGain(pair) => vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))],
-            Scalar::ChannelDelay(channel) => vec![
+        match self.quantities[plot] {
+            GainQuantity::NetGain(pair) => {
+                vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))]
+            }
+            GainQuantity::Delay(channel) => vec![
                 ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
                 ("Bound of the delays".to_owned(), ExplainTarget::DelayBound(id)),
             ],
-            Scalar::ChannelGain(channel) => {
+            GainQuantity::Gain(channel) => {
                 let airspeed_kt = self.state.dataset().condition(id).map(|of| of.flight_state().airspeed_kt);
                 let gain = [
                     ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
@@ -193,7 +187,6 @@ impl FigureWords for GainPlots<'_> {
                     airspeed_kt.map(|at| ("Scheduled gain".to_owned(), ExplainTarget::ScheduledGain(channel, at)));
                 gain.into_iter().chain(scheduled).collect()
             }
-            _ => Vec::new(),
         }
     }
 }

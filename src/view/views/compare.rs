@@ -1,15 +1,17 @@
 //! Variants: decisions kept under names, beside the present ones.
 
-use egui::{Align, Button, Layout, RichText, Role, TextEdit, Ui, WidgetInfo};
-use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::study::{Analysis, Edit, Table, Variant, VariantJob, decision_differences};
+use egui::{Align, Button, Layout, RichText, Role, Ui};
+use gdcm_core::dataset::{ConditionId, Pair, PairTable};
+use gdcm_core::schedule::CostChange;
+use gdcm_core::study::{Analysis, Assessed, Edit, Table, Variant, VariantJob, decision_differences};
+use gdcm_core::units::signed;
 
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;
-use crate::view::controls::toggle_ui;
+use crate::view::controls::{is_entered, named, text_field_ui, toggle_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_ui};
+use crate::view::tables::{TableLook, table_ui};
 
 /// The variants of the study, what differs between them and the present decisions, and what it does.
 pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -26,14 +28,13 @@ pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     }
     ui.add_space(4.0);
     let tables = [difference_table(state), figure_table(state)];
-    let look = TableLook { color: &|_, _| None, selected: &|_| false };
     let half = 0.5 * ui.available_height();
     for (index, table) in tables.iter().enumerate() {
         ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
         let room = if index == 0 { half } else { ui.available_height() };
         ui.allocate_ui(egui::vec2(ui.available_width(), room), |ui| {
             let mut sorting = state.display.compare_sorting[index];
-            table_ui(ui, table, &mut sorting, &look, palette, commands);
+            table_ui(ui, table, &mut sorting, &TableLook::PLAIN, palette, commands);
             state.display.compare_sorting[index] = sorting;
         });
     }
@@ -43,13 +44,8 @@ pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = &mut state.display.variant_name;
-        let field = ui.add(TextEdit::singleline(name).hint_text("name of the variant").desired_width(200.0));
-        field.widget_info(|| {
-            let mut info = WidgetInfo::labeled(Role::TextInput, true, "Name of the variant");
-            info.current_text_value = Some(name.clone());
-            info
-        });
-        let entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+        let field = text_field_ui(ui, "Name of the variant", name, "name of the variant", 200.0);
+        let entered = is_entered(ui, &field);
         let keep = ui.add_enabled(!name.trim().is_empty(), Button::new("Keep as variant"));
         if keep.on_hover_text("Keep the present decisions under this name").clicked() || entered {
             commands.push(Edit::KeepVariant { name: std::mem::take(name) }.into());
@@ -62,22 +58,16 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
         ui.label(RichText::new(&variant.name).strong());
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = || variant.name.clone();
-            let mut button = |text: &str, verb: &str, hint: &str, edit: Edit| {
-                let label = format!("{verb} variant {}", variant.name);
-                let button = ui.small_button(text);
-                button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
+            let mut button = |verb: &str, hint: &str, edit: Edit| {
+                let button = named(ui.small_button(verb), Role::Button, format!("{verb} variant {}", variant.name));
                 if button.on_hover_text(hint).clicked() {
                     commands.push(edit.into());
                 }
             };
-            button(
-                "Remove",
-                "Remove",
-                "Forget this variant; undo brings it back",
-                Edit::RemoveVariant { name: name() },
-            );
+            let hint = "Forget this variant; undo brings it back";
+            button("Remove", hint, Edit::RemoveVariant { name: name() });
             let hint = "Its decisions become the present ones; undo brings those back";
-            button("Take", "Take", hint, Edit::TakeVariant { name: name() });
+            button("Take", hint, Edit::TakeVariant { name: name() });
             let label = format!("Overlay variant {}", variant.name);
             let hint = "Its corrected model in Bode, and its net gains, dotted beside the present ones";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
@@ -145,7 +135,9 @@ pub fn figure_table(state: &State) -> Table {
     };
     for pair in net_gain_pairs(state) {
         let name = state.dataset().pair_name(pair);
-        row(format!("net gain {name}"), &|analysis| net_gain(analysis, condition, pair));
+        row(format!("net gain {name}"), &|analysis| {
+            Some(format!("{:.4}", analysis.condition(condition)?.correction.net_gain(pair)))
+        });
         row(format!("J {name}"), &|analysis| cost(analysis, condition, pair));
     }
     row("objective of the gains".to_owned(), &|analysis| {
@@ -153,10 +145,6 @@ pub fn figure_table(state: &State) -> Table {
     });
     row("mean ΔJ on-axis, scheduled".to_owned(), &|analysis| mean_change(state, analysis));
     table
-}
-
-fn net_gain(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {
-    Some(format!("{:.4}", analysis.condition(condition)?.correction.net_gain(pair)))
 }
 
 fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {
@@ -167,15 +155,14 @@ fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<Strin
 /// Mean change of J of the on-axis responses of the nominal models under the schedule, over the conditions assessed.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
-    let changes: Vec<f64> = analysis
-        .assessment
-        .values()
-        .filter_map(|assessed| match assessed {
-            gdcm_core::study::Assessed::Nominal(changes) => Some(changes),
-            gdcm_core::study::Assessed::LeftOut { .. } => None,
-        })
-        .flat_map(|changes| measuring.marked().filter_map(|pair| Some(changes[pair]?.total())))
-        .collect();
+    let assessed = analysis.assessment.values().filter_map(|assessed| match assessed {
+        Assessed::Nominal(changes) => Some(changes),
+        Assessed::LeftOut { .. } => None,
+    });
+    let change = |changes: &PairTable<Option<CostChange>>| {
+        measuring.marked().filter_map(|pair| Some(changes[pair]?.total())).collect::<Vec<f64>>()
+    };
+    let changes: Vec<f64> = assessed.flat_map(change).collect();
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-    mean.is_finite().then(|| gdcm_core::units::signed(mean, 2))
+    mean.is_finite().then(|| signed(mean, 2))
 }

@@ -9,7 +9,6 @@ use gdcm_core::study::{
     CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection, RemarkKind, Table, setting,
 };
 use gdcm_core::units::telling;
-use gdcm_files::figure::{Figure, FigureRequest};
 
 use super::View;
 use super::frequency::condition_source;
@@ -17,10 +16,10 @@ use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::figures::request;
 use crate::view::palette::{BODY_SIZE, Palette, medium};
-use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::plot::{FigureScene, figure_legend_ui, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableLook, table_grid_ui};
+use crate::view::tables::{Sorting, TableLook, table_grid_ui};
 
 /// Part of the width that words and tables take.
 const WORDS_PART: f32 = 0.56;
@@ -103,35 +102,19 @@ pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comm
             use_ui(ui, state, &assessment, palette, commands);
             // What decides comes first.
             let costs = Table { title: "J, mean over the conditions".to_owned(), ..assessment.cost_table() };
-            table_part_ui(ui, &costs, &|_, _| None, palette, commands);
+            table_part_ui(ui, &costs, TableLook::PLAIN.color, palette, commands);
             words_ui(ui, state, &assessment, palette);
             tables_ui(ui, state, &assessment, palette, commands);
         });
     });
-    let figure = figure(state).unwrap_or_default();
+    let request = request(state, View::Couplings);
+    let figure = request.and_then(|request| request.figure(None, condition_source(state).as_ref())).unwrap_or_default();
     let mut view = state.display.figures.remove(&View::Couplings).unwrap_or_default();
-    let scene = FigureScene {
-        name: "couplings",
-        figure: &figure,
-        selected: None,
-        highlighted: None,
-        columns: &[],
-        zooms: true,
-        is_compact: false,
-        accented: None,
-        least: vec2(220.0, 150.0),
-        message: state.results.absence(),
-        words: (&LoopWords(&figure), 0),
-    };
+    let scene = FigureScene::new("couplings", &figure, vec2(220.0, 150.0), state.results.absence(), &figure);
+    let scene = FigureScene { zooms: true, ..scene };
     figure_legend_ui(ui, &figure, palette);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Couplings, view);
-}
-
-/// The figure of the condition shown; none until the couplings are assessed.
-fn figure(state: &State) -> Option<Figure> {
-    let request: FigureRequest = request(state, View::Couplings)?;
-    request.figure(None, condition_source(state).as_ref())
 }
 
 /// The assessment that the view shows.
@@ -168,11 +151,9 @@ fn words_ui(ui: &mut Ui, state: &State, assessment: &CouplingsAssessment, palett
     for remark in assessment.remarks(state.dataset()) {
         let words = match remark.kind {
             RemarkKind::Good => RichText::new(&remark.text).color(palette.text),
-            RemarkKind::Caution => RichText::new(format!("⚠ {}", remark.text)).color(palette.warning),
-            RemarkKind::Trouble => {
-                RichText::new(format!("⚠ {}", remark.text)).font(medium(BODY_SIZE)).color(palette.warning)
-            }
+            _ => RichText::new(format!("⚠ {}", remark.text)).color(palette.warning),
         };
+        let words = if remark.kind == RemarkKind::Trouble { words.font(medium(BODY_SIZE)) } else { words };
         ui.add_space(2.0);
         ui.add(Label::new(words).wrap());
     }
@@ -190,19 +171,14 @@ fn tables_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let plain = |_: usize, _: usize| None;
     for table in assessment.matrix_tables(state.dataset()) {
         // What is within its bar is not told from nothing.
         let dim = |row: usize, column: usize| table.rows[row][column].starts_with('(').then_some(palette.dim_text);
         table_part_ui(ui, &table, &dim, palette, commands);
     }
-    let above = above_band_table(state.dataset(), assessment);
-    if !above.rows.is_empty() {
-        table_part_ui(ui, &above, &plain, palette, commands);
-    }
-    let poles = poles_of_condition(state, assessment);
-    if !poles.rows.is_empty() {
-        table_part_ui(ui, &poles, &plain, palette, commands);
+    let others = [above_band_table(state.dataset(), assessment), poles_of_condition(state, assessment)];
+    for table in others.iter().filter(|table| !table.rows.is_empty()) {
+        table_part_ui(ui, table, TableLook::PLAIN.color, palette, commands);
     }
 }
 
@@ -215,7 +191,7 @@ fn table_part_ui(
 ) {
     ui.add_space(10.0);
     ui.add(Label::new(RichText::new(&table.title).font(medium(BODY_SIZE))).wrap());
-    let look = TableLook { color, selected: &|_| false };
+    let look = TableLook { color, ..TableLook::PLAIN };
     ScrollArea::horizontal().id_salt(("couplings", &table.title)).show(ui, |ui| {
         ui.spacing_mut().interact_size.y = 16.0;
         table_grid_ui(ui, table, &mut Sorting::default(), &look, palette, commands);
@@ -246,13 +222,4 @@ fn poles_of_condition(state: &State, assessment: &CouplingsAssessment) -> Table 
     table.rows.iter_mut().for_each(|row| drop(row.remove(0)));
     table.columns.remove(0);
     Table { title: format!("Poles of the physics representative of condition {id}"), ..table }
-}
-
-/// What the plots say to who does not see them.
-struct LoopWords<'a>(&'a Figure);
-
-impl FigureWords for LoopWords<'_> {
-    fn plot(&self, plot: usize) -> String {
-        self.0.plots[plot].title.clone()
-    }
 }

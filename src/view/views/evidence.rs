@@ -13,7 +13,7 @@ use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableLook, table_ui};
+use crate::view::tables::{Sorting, TableLook, table_ui};
 
 /// Height of the bar of one scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
@@ -63,9 +63,8 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
     if let Some(variable) = state.study.settings.schedule.second {
         let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
         if !tests.clone().any(|test| test.needed) {
-            let words =
-                format!("The schedule is one of airspeed and {variable}, though no response is found to need it.");
-            ui.label(RichText::new(words).size(SMALL_SIZE).color(palette.warning));
+            let words = "though no response is found to need it";
+            ui.label(palette.small_warning(format!("The schedule is one of airspeed and {variable}, {words}.")));
         }
     }
     ui.add_space(4.0);
@@ -148,7 +147,7 @@ fn tables_ui(
         let beyond = differences.get(row).is_some_and(|of| of.is_significant(uncertainty.level));
         (column == 6 && beyond).then_some(palette.warning)
     };
-    let look = TableLook { color: &color, selected: &|_| false };
+    let look = TableLook { color: &color, ..TableLook::PLAIN };
     let click = rows_high(ui, table.rows.len(), |ui| table_ui(ui, &table, &mut sorting[0], &look, palette, commands));
     if let Some(click) = click
         && let Some(of) = differences.get(click.row)
@@ -156,29 +155,36 @@ fn tables_ui(
         commands.push(Command::SelectCondition(of.conditions[0]));
         commands.push(Command::FocusPair(of.pair));
     }
-    let plain = TableLook { color: &|_, _| None, selected: &|_| false };
     let table = second_variable_table(state.dataset(), uncertainty);
     heading(ui, &table.title);
-    rows_high(ui, table.rows.len(), |ui| table_ui(ui, &table, &mut sorting[1], &plain, palette, commands));
+    rows_high(ui, table.rows.len(), |ui| table_ui(ui, &table, &mut sorting[1], &TableLook::PLAIN, palette, commands));
     let mut cached = std::mem::take(&mut state.display.evidence);
     cached.refresh(state);
     if let Some((_, evidence)) = cached.found() {
-        let (table, kinds) = evidence_table(state, evidence);
         heading(
             ui,
             "Error of each form of the schedule, fitted and of a condition it has not seen [% of the net gain]",
         );
-        let schedule = state.study.settings.schedule;
-        let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
-        let rows = table.rows.len();
-        let click = rows_high(ui, rows, |ui| table_ui(ui, &table, &mut sorting[2], &look, palette, commands));
-        if let Some(click) = click
-            && let Some(&kind) = kinds.get(click.row)
-        {
-            commands.push(setting::SCHEDULE.to(kind).into());
-        }
+        let rows = evidence.kinds.len();
+        rows_high(ui, rows, |ui| forms_ui(ui, state, evidence, (&mut sorting[2], palette), commands));
     }
     state.display.evidence = cached;
+}
+
+/// The evidence for every form of the schedule; a click on a form takes it.
+pub(super) fn forms_ui(
+    ui: &mut Ui,
+    state: &State,
+    evidence: &FormComparison,
+    (sorting, palette): (&mut Sorting, &Palette),
+    commands: &mut Vec<Command>,
+) {
+    let (table, kinds) = evidence_table(state, evidence);
+    let kind = state.study.settings.schedule.kind;
+    let look = TableLook { selected: &|row| kinds.get(row) == Some(&kind), ..TableLook::PLAIN };
+    let click = table_ui(ui, &table, sorting, &look, palette, commands);
+    let taken = click.and_then(|click| kinds.get(click.row));
+    commands.extend(taken.map(|&kind| setting::SCHEDULE.to(kind).into()));
 }
 
 /// Where a table of so many rows goes that is one among others in something that scrolls: as high as its rows.

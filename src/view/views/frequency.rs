@@ -16,8 +16,8 @@ use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
 use crate::view::plot::{
-    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, Pane, Readout,
-    ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
+    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, PANES, Pane,
+    Readout, ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
 };
 use crate::view::state::State;
 
@@ -40,7 +40,7 @@ pub(super) fn frequency_plot_ui(
         pinned: &display.pinned,
         crossings: &display.crossings,
         readout: readout.as_ref(),
-        hidden_roles: &display.hidden_roles,
+        hidden_roles: Some(&display.hidden_roles),
         raised: display.raised,
         names_curves: state.display.is_wide && scene.quantity.is_of_condition(),
         chips: &chips,
@@ -57,11 +57,11 @@ pub(super) fn frequency_plot_ui(
             event => command_of(state, event),
         });
     }
-    if let Some(CurveId::Model(id)) = view.hovered() {
+    if let Some(CurveId::Model(id)) = &view.hovered {
         commands.push(Command::Hover(id.clone()));
     }
     commands.extend(pointed_words(view, curves, (quantity, unit)).map(Command::Tell));
-    commands.extend(view.pointed_omega().map(|omega| CurveCommand::PointAt(omega).into()));
+    commands.extend(view.pointed_omega.map(|omega| CurveCommand::PointAt(omega).into()));
 }
 
 fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
@@ -74,25 +74,13 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
         BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
-        BodeEvent::RoleToggled(role) => Some(CurveCommand::ToggleRole(role).into()),
-        BodeEvent::RoleAlone(role) => Some(CurveCommand::ShowRoleAlone(role).into()),
-        BodeEvent::RoleRaised(role) => Some(CurveCommand::RaiseRole(role).into()),
-        BodeEvent::BandsShown(shown) => Some(CurveCommand::ShowBands(shown).into()),
+        BodeEvent::Display(command) => Some(command.into()),
         BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),
         BodeEvent::Wished(id, wish) => wished(state, id, wish),
         BodeEvent::Boxed(curves) => {
-            let models = curves.into_iter().filter_map(|curve| match curve {
-                CurveId::Model(id) => Some(id),
-                CurveId::Corrected
-                | CurveId::Scheduled
-                | CurveId::WithoutLeads
-                | CurveId::Coupled
-                | CurveId::Variant => None,
-            });
-            Some(CurveCommand::Select(models.collect()).into())
+            let model = |curve| if let CurveId::Model(id) = curve { Some(id) } else { None };
+            Some(CurveCommand::Select(curves.into_iter().filter_map(model).collect()).into())
         }
-        BodeEvent::CursorPinned(omega) => Some(CurveCommand::PinCursor(omega).into()),
-        BodeEvent::CursorsUnpinned => Some(CurveCommand::UnpinCursors.into()),
         BodeEvent::Hovered(_)
         | BodeEvent::Clicked(_)
         | BodeEvent::TakenBack(_)
@@ -116,26 +104,14 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
         (CurveWish::Pin, CurveId::Model(id)) => Some(Edit::Pin(id).into()),
         (CurveWish::Isolate, CurveId::Model(id)) => Some(Command::Isolate(id)),
         (CurveWish::Hide, CurveId::Model(id)) => Some(CurveCommand::HideModel(id).into()),
-        (
-            _,
-            CurveId::Model(_)
-            | CurveId::Corrected
-            | CurveId::Scheduled
-            | CurveId::WithoutLeads
-            | CurveId::Coupled
-            | CurveId::Variant,
-        ) => None,
+        _ => None,
     }
 }
 
 /// The numbers of a curve as text: a heading, then a line for each frequency, with tabs between.
 fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
-    let mut text = format!(
-        "{}\nω [rad/s]\t{}\t{}\n",
-        curve.label,
-        quantity.drawn_label(Pane::Magnitude),
-        quantity.drawn_label(Pane::Phase)
-    );
+    let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
+    let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);
     let numbers = curve.omega.iter().zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
     for (omega, (magnitude, phase)) in numbers {
         // Writing to a string cannot fail.
@@ -248,7 +224,7 @@ fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
                 curve.detail = format!("{}{separator}{action}", curve.detail);
             }
             CurveId::Scheduled if state.others_are_older() => curve.label.push_str(" of older settings"),
-            CurveId::Corrected | CurveId::Scheduled | CurveId::WithoutLeads | CurveId::Coupled | CurveId::Variant => {}
+            _ => {}
         }
     }
     curves
@@ -277,11 +253,8 @@ pub fn cursor_readout(
             warns: [false; 2],
         };
         let frequency = format!("{} → {}", unit.readout(from).trim_start_matches("ω "), frequency(to));
-        return Some(Readout {
-            heading: "change between marks".to_owned(),
-            frequency,
-            cells: told.map(cell).collect(),
-        });
+        let (heading, cells) = ("change between marks".to_owned(), told.map(cell).collect());
+        return Some(Readout { heading, frequency, cells });
     }
     let pair = of_role(Role::Corrected).zip(of_role(Role::IdentifiedRepresentative));
     let (heading, omega) = match (cursor, pinned) {
@@ -303,8 +276,6 @@ pub fn cursor_readout(
     }
     Some(Readout { heading: heading.to_owned(), frequency: frequency(omega), cells })
 }
-
-const PANES: [Pane; 2] = [Pane::Magnitude, Pane::Phase];
 
 fn change_text(quantity: BodeQuantity<'_>, pane: Pane, change: Option<f64>) -> String {
     // The ratio of two ratios is a difference of decibels.

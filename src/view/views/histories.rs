@@ -18,7 +18,7 @@ use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::records::RecordsCommand;
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_grid_ui};
+use crate::view::tables::{TableLook, table_grid_ui};
 
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
@@ -94,19 +94,9 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
         OverTime::Test(_) => Some(1 + state.display.pair.output),
         OverTime::Record(..) => None,
     };
-    let scene = FigureScene {
-        name: "requirements in time",
-        figure: &figure,
-        selected: None,
-        highlighted: None,
-        columns: &[],
-        zooms: true,
-        is_compact: false,
-        accented,
-        least: if matches!(found, OverTime::Test(_)) { LEAST_PLOT } else { LEAST_RECORD },
-        message: "There is nothing to show",
-        words: (&HistoryWords { figure: &figure }, 0),
-    };
+    let (least, words) = (if accented.is_some() { LEAST_PLOT } else { LEAST_RECORD }, HistoryWords(&figure));
+    let scene = FigureScene::new("requirements in time", &figure, least, "There is nothing to show", &words);
+    let scene = FigureScene { zooms: true, accented, ..scene };
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
 }
@@ -147,7 +137,7 @@ fn shares_ui(ui: &mut Ui, state: &mut State, history: &RecordHistory, palette: &
         7 if table.rows[row][7] == Trend::Opposite.name() => Some(palette.warning),
         _ => None,
     };
-    let look = TableLook { color: &color, selected: &|_| false };
+    let look = TableLook { color: &color, ..TableLook::PLAIN };
     ScrollArea::vertical().id_salt("tolerances").auto_shrink(false).show(ui, |ui| {
         ui.label(palette.small(&table.title));
         let mut sorting = state.display.requirements_sorting;
@@ -189,12 +179,10 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
 }
 
 /// What the plots over time say.
-struct HistoryWords<'a> {
-    figure: &'a Figure,
-}
+struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {
     fn plot(&self, plot: usize) -> String {
-        self.figure.plots.get(plot).map_or_else(String::new, |plot| format!("{} over time", plot.title))
+        format!("{} over time", self.0.plots[plot].title)
     }
 }

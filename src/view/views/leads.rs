@@ -1,6 +1,6 @@
 //! What delay or lead does in each channel of the condition, and what leads cost above the band.
 
-use egui::{Panel, RichText, Ui, vec2};
+use egui::{Panel, Ui, vec2};
 use gdcm_core::correction::{Channel, LeadPrice};
 use gdcm_core::study::{PhaseCorrection, Table};
 use gdcm_core::units::{number, s_to_ms, signed, telling};
@@ -10,10 +10,10 @@ use super::View;
 use super::frequency::condition_source;
 use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
-use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{FigureScene, FigureWords, figure_ui};
+use crate::view::palette::Palette;
+use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableLook, table_ui};
+use crate::view::tables::{Sorting, TableLook, table_ui};
 
 /// Part of the width that the table takes.
 const TABLE_PART: f32 = 0.5;
@@ -28,9 +28,8 @@ pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
             let pair = Channel::of(state.display.pair);
             let channels = all_channels(state.dataset());
             let selected = |row: usize| channels.get(row).is_some_and(|channel| pair.contains(channel));
-            let look = TableLook { color: &|_, _| None, selected: &selected };
-            let words = RichText::new(&table.title).size(SMALL_SIZE).color(palette.warning);
-            ui.label(words);
+            let look = TableLook { selected: &selected, ..TableLook::PLAIN };
+            ui.label(palette.small_warning(&table.title));
             ui.spacing_mut().interact_size.y = 16.0;
             table_ui(ui, &table, &mut Sorting::default(), &look, palette, commands);
         });
@@ -41,19 +40,7 @@ pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
         _ => "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\"",
     };
     let mut view = state.display.figures.remove(&View::Leads).unwrap_or_default();
-    let scene = FigureScene {
-        name: "leads",
-        figure: &figure,
-        selected: None,
-        highlighted: None,
-        columns: &[],
-        zooms: false,
-        is_compact: false,
-        accented: None,
-        least: vec2(180.0, 110.0),
-        message,
-        words: (&LeadsWords(&figure), 0),
-    };
+    let scene = FigureScene::new("leads", &figure, vec2(180.0, 110.0), message, &figure);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Leads, view);
 }
@@ -100,13 +87,4 @@ pub fn leads_table(state: &State) -> Option<Table> {
         ]);
     }
     Some(table)
-}
-
-/// What the plots say to who does not see them.
-struct LeadsWords<'a>(&'a Figure);
-
-impl FigureWords for LeadsWords<'_> {
-    fn plot(&self, plot: usize) -> String {
-        self.0.plots[plot].title.clone()
-    }
 }

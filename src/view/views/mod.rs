@@ -13,36 +13,30 @@ use serde::{Deserialize, Serialize};
 
 use super::{Command, Palette, State, ViewGroup};
 
-mod across;
 mod assessment;
 mod bode;
 mod channels;
 mod compare;
 mod couplings;
-mod error;
 mod evidence;
 mod frequency;
 mod histories;
 mod leads;
 mod net_gain;
-mod overview;
 mod poles;
 mod requirement_limits;
 mod requirements;
 
-pub use across::*;
 pub use assessment::*;
 pub use bode::*;
 pub use channels::*;
 pub use compare::*;
 pub use couplings::*;
-pub use error::*;
 pub use evidence::*;
 pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
 pub use histories::*;
 pub use leads::*;
 pub use net_gain::*;
-pub use overview::*;
 pub use poles::*;
 pub use requirement_limits::*;
 pub use requirements::*;
@@ -114,39 +108,46 @@ impl View {
     pub fn kind(self) -> ViewKind {
         match self {
             Self::Bode => ViewKind {
+                name: "Bode",
+                purpose: "Magnitude and phase of the response in focus",
+                draw: bode_view_ui,
                 title: ViewTitle::Response,
                 figure: Some(FigureKind::Bode),
-                ..ViewKind::new("Bode", "Magnitude and phase of the response in focus", bode_view_ui)
+                ..ViewKind::PLAIN
             },
             Self::Error => ViewKind {
+                name: "Error",
+                purpose: "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
+                draw: error_view_ui,
                 title: ViewTitle::Response,
                 tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
                 tools_width: 160.0,
                 figure: Some(FigureKind::Error),
-                ..ViewKind::new(
-                    "Error",
-                    "What the fit sees: the ratio and the phase difference of the response in focus, and G, D and bounds",
-                    error_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Overview => ViewKind {
+                name: "Overview",
+                purpose: "Every response of the condition, small",
+                draw: overview_view_ui,
                 title: ViewTitle::Condition,
                 figure: Some(FigureKind::Overview),
-                ..ViewKind::new("Overview", "Every response of the condition, small", overview_view_ui)
+                ..ViewKind::PLAIN
             },
             Self::Across => ViewKind {
+                name: "Airspeeds",
+                purpose: "The response in focus in every condition, coloured by airspeed",
+                draw: across_view_ui,
                 title: ViewTitle::Focus,
                 tools: across_header_ui,
                 tools_width: 330.0,
                 needs: |state| vec![Need::Across(across_job(state))],
                 figure: Some(FigureKind::Airspeeds),
-                ..ViewKind::new(
-                    "Airspeeds",
-                    "The response in focus in every condition, coloured by airspeed",
-                    across_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Poles => ViewKind {
+                name: "Poles",
+                purpose: "Poles of every model of the condition in the s-plane, and the modes in a table",
+                draw: poles_view_ui,
                 group: ViewGroup::Models,
                 title: ViewTitle::Condition,
                 tools: |ui, state, _, commands| poles_header_ui(ui, state, commands),
@@ -156,13 +157,12 @@ impl View {
                     condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of) })).into_iter().collect()
                 },
                 figure: Some(FigureKind::Poles),
-                ..ViewKind::new(
-                    "Poles",
-                    "Poles of every model of the condition in the s-plane, and the modes in a table",
-                    poles_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Couplings => ViewKind {
+                name: "Couplings",
+                purpose: "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
+                draw: couplings_view_ui,
                 group: ViewGroup::Models,
                 takes_dock: true,
                 title: ViewTitle::Condition,
@@ -171,34 +171,35 @@ impl View {
                 is_of_all_conditions: true,
                 needs: |state| vec![Need::Couplings(couplings_job(state))],
                 figure: Some(FigureKind::Couplings),
-                ..ViewKind::new(
-                    "Couplings",
-                    "What mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop",
-                    couplings_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Records => ViewKind {
+                name: "Records",
+                purpose: "Flight records of the condition, and models identified from them",
+                draw: super::records::records_view_ui,
                 group: ViewGroup::Models,
                 takes_dock: true,
                 title: ViewTitle::Condition,
                 tools: |ui, state, _, commands| super::records::records_header_ui(ui, state, commands),
                 tools_width: 380.0,
                 needs: |state| super::records::simulation_jobs(state).into_iter().map(Need::Simulation).collect(),
-                ..ViewKind::new(
-                    "Records",
-                    "Flight records of the condition, and models identified from them",
-                    super::records::records_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Channels => ViewKind {
+                name: "Channels",
+                purpose: "Gain of every channel against airspeed",
+                draw: channels_view_ui,
                 group: ViewGroup::Schedule,
                 tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
                 tools_width: 410.0,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Channels),
-                ..ViewKind::new("Channels", "Gain of every channel against airspeed", channels_view_ui)
+                ..ViewKind::PLAIN
             },
             Self::Assessment => ViewKind {
+                name: "Assessment",
+                purpose: "What the correction is worth, condition by condition",
+                draw: assessment_view_ui,
                 group: ViewGroup::Judge,
                 tools: |ui, state, _, commands| assessment_header_ui(ui, state, commands),
                 tools_width: 640.0,
@@ -210,34 +211,31 @@ impl View {
                     job.map(Need::Assessment).into_iter().collect()
                 },
                 figure: Some(FigureKind::Assessment),
-                ..ViewKind::new(
-                    "Assessment",
-                    "What the correction is worth, condition by condition",
-                    assessment_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             // The button of its figure stands in its first line: it has no tools.
             Self::Evidence => ViewKind {
+                name: "Evidence",
+                purpose: "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
+                draw: evidence_view_ui,
                 group: ViewGroup::Schedule,
                 takes_dock: true,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::Evidence),
-                ..ViewKind::new(
-                    "Evidence",
-                    "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
-                    evidence_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Compare => ViewKind {
+                name: "Compare",
+                purpose: "Variants: decisions kept under names, beside the present ones",
+                draw: compare_view_ui,
                 group: ViewGroup::Judge,
                 needs: |state| variant_jobs(state).into_iter().map(Need::Variant).collect(),
-                ..ViewKind::new(
-                    "Compare",
-                    "Variants: decisions kept under names, beside the present ones",
-                    compare_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Requirements => ViewKind {
+                name: "Requirements",
+                purpose: "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
+                draw: requirements_view_ui,
                 group: ViewGroup::Judge,
                 takes_dock: true,
                 title: ViewTitle::Words(|_| NO_QUALIFICATION.to_owned()),
@@ -246,33 +244,31 @@ impl View {
                 is_of_all_conditions: true,
                 needs: requirements_needs,
                 figure: Some(FigureKind::Requirements),
-                ..ViewKind::new(
-                    "Requirements",
-                    "What a qualification asks of the models: bandwidth and phase delay, modes, summary costs",
-                    requirements_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
             Self::Leads => ViewKind {
+                name: "Leads",
+                purpose: "What leads do in each channel, and their price above the band",
+                draw: leads_view_ui,
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 title: ViewTitle::Response,
                 figure: Some(FigureKind::Leads),
-                ..ViewKind::new("Leads", "What leads do in each channel, and their price above the band", leads_view_ui)
+                ..ViewKind::PLAIN
             },
             Self::NetGain => ViewKind {
+                name: "Net gain",
+                purpose: "Net gain of the held responses against airspeed, with the schedule",
+                draw: net_gain_view_ui,
                 group: ViewGroup::Schedule,
                 is_docked: true,
-                long_name: "Net gain over airspeed",
+                long_name: Some("Net gain over airspeed"),
                 title: ViewTitle::Words(net_gain_words),
                 tools: net_gain_header_ui,
                 tools_width: NET_GAIN_CONTROLS,
                 is_of_all_conditions: true,
                 figure: Some(FigureKind::NetGain),
-                ..ViewKind::new(
-                    "Net gain",
-                    "Net gain of the held responses against airspeed, with the schedule",
-                    net_gain_view_ui,
-                )
+                ..ViewKind::PLAIN
             },
         }
     }
@@ -303,34 +299,29 @@ pub struct ViewKind {
     pub is_docked: bool,
     /// Whether it takes the room of the dock.
     pub takes_dock: bool,
-    /// What its heading in the dock says.
-    pub long_name: &'static str,
+    /// What its heading in the dock says, where that is more than its tab does.
+    pub long_name: Option<&'static str>,
     /// What it is on paper. Variants are tables, which are saved as such; of records what is identified is saved.
     pub figure: Option<FigureKind>,
 }
 
 impl ViewKind {
-    fn new(
-        name: &'static str,
-        purpose: &'static str,
-        draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
-    ) -> Self {
-        Self {
-            name,
-            purpose,
-            draw,
-            title: ViewTitle::None,
-            tools: |_, _, _, _| {},
-            tools_width: 0.0,
-            needs: |_| Vec::new(),
-            is_of_all_conditions: false,
-            group: ViewGroup::Response,
-            is_docked: false,
-            takes_dock: false,
-            long_name: name,
-            figure: None,
-        }
-    }
+    /// One that shows nothing, has no tools and needs nothing.
+    const PLAIN: Self = Self {
+        name: "",
+        purpose: "",
+        draw: |_, _, _, _| {},
+        title: ViewTitle::None,
+        tools: |_, _, _, _| {},
+        tools_width: 0.0,
+        needs: |_| Vec::new(),
+        is_of_all_conditions: false,
+        group: ViewGroup::Response,
+        is_docked: false,
+        takes_dock: false,
+        long_name: None,
+        figure: None,
+    };
 }
 
 /// What the header of a view says of what is shown.

@@ -10,14 +10,14 @@ use serde::{Deserialize, Serialize};
 use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
 use super::compare::overlaid_analysis;
-use super::evidence::{coefficient_table, evidence_table, lead_evidence_table, residual_table};
+use super::evidence::{coefficient_table, forms_ui, lead_evidence_table, residual_table};
 use crate::view::command::Command;
 use crate::view::controls::{named, restore_panel_size, toggle_ui};
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
-use crate::view::table_view::{Sorting, TableLook, table_ui};
+use crate::view::tables::{Sorting, TableLook, table_ui};
 
 /// Room \[pt\] in which the controls of this view stand in one line.
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
@@ -121,28 +121,20 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     let mut cached = std::mem::take(&mut state.display.evidence);
     cached.refresh(state);
     let mut sorting = state.display.evidence_sorting;
-    let schedule = state.study.settings.schedule;
     ScrollArea::vertical().show(ui, |ui| match cached.found() {
         None => {
-            ui.label(RichText::new(state.results.absence()).color(palette.dim_text));
+            ui.label(palette.dim(state.results.absence()));
         }
         Some((conditions, evidence)) => {
             let hint = "fit: residuals of the conditions that the schedule is made of; unseen: of each condition under the \
                         schedule that is made without it (root mean square of ln of the net gain)";
             ui.label(RichText::new("Error of each form [% of the net gain]").size(SMALL_SIZE).strong()).on_hover_text(hint);
-            let (table, kinds) = evidence_table(state, evidence);
-            let look = TableLook { color: &|_, _| None, selected: &|row| kinds.get(row) == Some(&schedule.kind) };
-            if let Some(click) = table_ui(ui, &table, &mut sorting, &look, palette, commands)
-                && let Some(&kind) = kinds.get(click.row)
-            {
-                commands.push(setting::SCHEDULE.to(kind).into());
-            }
-            let plain = TableLook { color: &|_, _| None, selected: &|_| false };
+            forms_ui(ui, state, evidence, (&mut sorting, palette), commands);
             let leads = lead_evidence_table(state, cached.leads());
             let residuals = residual_table(state, conditions, evidence);
             for table in leads.into_iter().chain(residuals).chain(coefficient_table(state)) {
                 ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-                table_ui(ui, &table, &mut Sorting::default(), &plain, palette, commands);
+                table_ui(ui, &table, &mut Sorting::default(), &TableLook::PLAIN, palette, commands);
             }
         }
     });
@@ -230,7 +222,7 @@ pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let pairs = if state.analysis().is_some() { net_gain_pairs(state) } else { Vec::new() };
     let figure = state.analysis().map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
     let mut figure = figure.unwrap_or_default();
-    let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::net_gain).collect();
+    let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }

@@ -19,7 +19,7 @@ use crate::view::controls::restore_panel_size;
 use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::state::State;
-use crate::view::table_view::{TableLook, table_ui};
+use crate::view::tables::{TableLook, table_ui};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
 const SLOW: [Range; 2] = [Range { min: -2.0, max: 0.6 }, Range { min: -3.2, max: 3.2 }];
@@ -58,17 +58,9 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     figure_legend_ui(ui, &figure, palette);
     let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
     let scene = FigureScene {
-        name: "poles",
-        figure: &figure,
-        selected: None,
         highlighted: state.display.hovered.clone().map(MarkId::Model),
-        columns: &[],
         zooms: true,
-        is_compact: false,
-        accented: None,
-        least: LEAST_PLOT,
-        message,
-        words: (&words, 0),
+        ..FigureScene::new("poles", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
         commands.push(match event {
@@ -85,12 +77,10 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
 
 /// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
-    let zeros =
-        |id: &ModelId| state.display.modes.zeros.iter().find(|(of, _)| of == id).map(|(_, zeros)| zeros.clone());
-    let source = condition_source(state)?;
-    let zeros = |id: &ModelId| zeros(id).unwrap_or_default();
-    let shifts = &state.display.modes.shifts;
-    let figure = poles_figure(&source, state.modes()?, &bode_options(state), (&zeros, shifts));
+    let CachedModes { zeros, shifts, .. } = &state.display.modes;
+    let found =
+        |id: &ModelId| zeros.iter().find(|(of, _)| of == id).map(|(_, zeros)| zeros.clone()).unwrap_or_default();
+    let figure = poles_figure(&condition_source(state)?, state.modes()?, &bode_options(state), (&found, shifts));
     Some(figure).filter(|figure| figure.plots[0].panels[0].dots().next().is_some())
 }
 
@@ -161,19 +151,44 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     state.display.modes_sorting = sorting;
 }
 
-/// The modes of one condition followed from model to model, and zeros of one response: kept while they are the same.
+/// The modes of one condition followed from model to model, zeros of one response, and where couplings move poles: kept while what they
+/// are made of is the same.
 #[derive(Debug, Default)]
 pub struct CachedModes {
-    tracked: Option<(Arc<ConditionModes>, usize)>,
+    made_of: Option<MadeOf>,
     table: Table,
     /// Of each row the first model that jumps.
     jumping: Vec<Option<ModelId>>,
-    zeros_of: Option<(Arc<ConditionModes>, Pair, Vec<ModelId>)>,
     zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Couplings, modes and physics representative that `shifts` are of.
-    shifts_of: Option<(Arc<FittedCouplings>, Arc<ConditionModes>, usize)>,
     /// Where couplings move the poles of the physics representative.
     shifts: Vec<PoleShift>,
+}
+
+/// What the modes, the zeros and the shifts are made of.
+#[derive(Debug)]
+struct MadeOf {
+    modes: Arc<ConditionModes>,
+    /// Index of the physics model whose modes the others' are matched to.
+    reference: usize,
+    couplings: Option<Arc<FittedCouplings>>,
+    /// The response and the models whose zeros are shown.
+    zeros_of: Option<(Pair, Vec<ModelId>)>,
+}
+
+impl MadeOf {
+    fn of(state: &State, modes: &Arc<ConditionModes>) -> Self {
+        let coupled = state.shown().and_then(|shown| shown.coupled.as_ref());
+        let couplings = coupled.map(|coupled| Arc::clone(&coupled.fitted));
+        let zeros_of = state.display.show_zeros.then(|| (state.display.pair, models_with_zeros(state, modes)));
+        Self { modes: Arc::clone(modes), reference: reference(state, modes), couplings, zeros_of }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        let address = |of: &Self| of.couplings.as_ref().map(Arc::as_ptr);
+        Arc::ptr_eq(&self.modes, &other.modes)
+            && address(self) == address(other)
+            && (self.reference, &self.zeros_of) == (other.reference, &other.zeros_of)
+    }
 }
 
 impl CachedModes {
@@ -182,62 +197,39 @@ impl CachedModes {
         (&self.table, &self.jumping)
     }
 
-    /// Makes anew what no longer fits the state.
+    /// Makes it anew where it no longer fits the state.
     pub fn refresh(&mut self, state: &State) {
         let Some(modes) = state.modes() else {
             *self = Self::default();
             return;
         };
-        let reference = reference(state, modes);
-        let same = |of: &(Arc<ConditionModes>, usize)| Arc::ptr_eq(&of.0, modes) && of.1 == reference;
-        if !self.tracked.as_ref().is_some_and(same) {
-            (self.table, self.jumping) = modes_table(state, modes, reference);
-            self.tracked = Some((Arc::clone(modes), reference));
+        let made_of = MadeOf::of(state, modes);
+        if self.made_of.as_ref().is_some_and(|known| known.is_same(&made_of)) {
+            return;
         }
-        self.refresh_shifts(state, modes, reference);
-        if state.display.show_zeros {
-            self.refresh_zeros(state, modes);
-        }
-    }
-
-    fn refresh_shifts(&mut self, state: &State, modes: &Arc<ConditionModes>, reference: usize) {
-        let shown = state.shown();
-        let fitted = shown.and_then(|shown| shown.coupled.as_ref()).map(|coupled| Arc::clone(&coupled.fitted));
-        let now = fitted.map(|fitted| (fitted, Arc::clone(modes), reference));
-        let same = |of: &(Arc<FittedCouplings>, Arc<ConditionModes>, usize)| {
-            now.as_ref().is_some_and(|now| Arc::ptr_eq(&of.0, &now.0) && Arc::ptr_eq(&of.1, &now.1) && of.2 == now.2)
+        (self.table, self.jumping) = modes_table(state, modes, made_of.reference);
+        self.shifts = state.shown().map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+        let zeros = |pair: Pair, id: &ModelId| {
+            let model = modes.condition.model(id.bundle, &id.name);
+            model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default()
         };
-        if self.shifts_of.as_ref().map_or(now.is_none(), same) {
-            return;
-        }
-        self.shifts = shown.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
-        self.shifts_of = now;
+        let zeros_of = made_of.zeros_of.iter().flat_map(|(pair, ids)| ids.iter().map(|id| (*pair, id)));
+        self.zeros = zeros_of.map(|(pair, id)| (id.clone(), zeros(pair, id))).collect();
+        self.made_of = Some(made_of);
     }
+}
 
-    /// Zeros of the nominal model and of both representatives: of every model they would hide the poles.
-    fn refresh_zeros(&mut self, state: &State, modes: &Arc<ConditionModes>) {
-        let (pair, condition) = (state.display.pair, &modes.condition);
-        let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
-        let mut wanted = vec![state.model_id(BundleKind::Physics, &nominal.name)];
-        for kind in BundleKind::BOTH {
-            let name = state.shown().map(|shown| shown.representative_name(kind));
-            let id = name.map(|name| state.model_id(kind, name));
-            wanted.extend(id.filter(|id| !wanted.contains(id)));
-        }
-        let now = (Arc::clone(modes), pair, wanted);
-        if self.zeros_of.as_ref().is_some_and(|of| Arc::ptr_eq(&of.0, modes) && (of.1, &of.2) == (pair, &now.2)) {
-            return;
-        }
-        self.zeros = now
-            .2
-            .iter()
-            .map(|id| {
-                let model = condition.model(id.bundle, &id.name);
-                (id.clone(), model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default())
-            })
-            .collect();
-        self.zeros_of = Some(now);
+/// The nominal model and both representatives: zeros of every model would hide the poles.
+fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
+    let condition = &modes.condition;
+    let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+    let mut wanted = vec![state.model_id(BundleKind::Physics, &nominal.name)];
+    for kind in BundleKind::BOTH {
+        let name = state.shown().map(|shown| shown.representative_name(kind));
+        let id = name.map(|name| state.model_id(kind, name));
+        wanted.extend(id.filter(|id| !wanted.contains(id)));
     }
+    wanted
 }
 
 /// Index of the physics model whose modes the others' are matched to: the representative, the nominal one until it is known.

@@ -3,7 +3,7 @@
 use egui::{Button, Grid, Ui};
 use gdcm_core::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_core::study::OverviewLimits;
-use gdcm_core::units::{number, s_to_ms};
+use gdcm_core::units::number;
 
 use super::decided;
 use crate::view::command::{Command, RequirementTable};
@@ -19,14 +19,30 @@ fn shown(value: f64) -> String {
     number((1e9 * value).round() / 1e9)
 }
 
-/// A field of a number; what was typed where that is another one.
-fn field_ui(ui: &mut Ui, name: &str, value: f64, commands: &mut Vec<Command>) -> Option<f64> {
-    number_entry_ui(ui, name, &shown(value), "", FIELD, commands).flatten()
+/// What a number is multiplied by where it is shown, and what is typed.
+const AS_IT_IS: [f64; 2] = [1.0, 1.0];
+const IN_PERCENT: [f64; 2] = [100.0, 0.01];
+const IN_MILLISECONDS: [f64; 2] = [1e3, 1e-3];
+
+/// A field of a number, which is what was typed then.
+fn field_ui(ui: &mut Ui, name: &str, value: &mut f64, [to, from]: [f64; 2], commands: &mut Vec<Command>) {
+    if let Some(typed) = number_entry_ui(ui, name, &shown(to * *value), "", FIELD, commands).flatten() {
+        *value = from * typed;
+    }
 }
 
 /// The same that may stay empty.
-fn optional_field_ui(ui: &mut Ui, name: &str, value: Option<f64>, commands: &mut Vec<Command>) -> Option<Option<f64>> {
-    number_entry_ui(ui, name, &value.map_or_else(String::new, shown), "none", FIELD, commands)
+fn optional_field_ui(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut Option<f64>,
+    [to, from]: [f64; 2],
+    commands: &mut Vec<Command>,
+) {
+    let text = value.map_or_else(String::new, |value| shown(to * value));
+    if let Some(typed) = number_entry_ui(ui, name, &text, "none", FIELD, commands) {
+        *value = typed.map(|typed| from * typed);
+    }
 }
 
 /// Every row of the table of tolerances of time histories.
@@ -46,23 +62,17 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
         button_ui(ui, Button::new("Save tolerances…").small(), hint, Command::AskWriteTolerances, commands);
     });
     let mut rows = table.rows().to_vec();
-    let mut is_changed = false;
     Grid::new("tolerances in fields").num_columns(5).show(ui, |ui| {
         for (row, place) in rows.iter_mut().zip(1..) {
             ui.label(palette.small(format!("{} of {}", row.quantity, row.channel)));
-            if let Some(value) = field_ui(ui, &format!("Absolute tolerance {place}"), row.absolute, commands) {
-                (row.absolute, is_changed) = (value, true);
-            }
+            field_ui(ui, &format!("Absolute tolerance {place}"), &mut row.absolute, AS_IT_IS, commands);
             ui.label(palette.small(&row.unit));
-            let percent = row.relative.map(|part| 100.0 * part);
-            if let Some(value) = optional_field_ui(ui, &format!("Relative tolerance {place}"), percent, commands) {
-                (row.relative, is_changed) = (value.map(|percent| 0.01 * percent), true);
-            }
+            optional_field_ui(ui, &format!("Relative tolerance {place}"), &mut row.relative, IN_PERCENT, commands);
             ui.label(palette.small(format!("% of the change · {}", row.entry)));
             ui.end_row();
         }
     });
-    if is_changed {
+    if rows != table.rows() {
         commands.push(match ToleranceTable::new("edited", rows) {
             Ok(table) => to(table),
             Err(why) => Command::Refuse(why.to_string()),
@@ -80,7 +90,6 @@ pub fn mode_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, command
         commands.push(to(ModeToleranceTable::default()));
     }
     let mut rows = table.rows().to_vec();
-    let mut is_changed = false;
     Grid::new("tolerances of modes in fields").num_columns(5).show(ui, |ui| {
         for heading in ["response", "period [%]", "or [s]", "time to half [%]", "or damping ratio"] {
             ui.label(palette.small(heading));
@@ -88,27 +97,17 @@ pub fn mode_tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, command
         ui.end_row();
         for (row, place) in rows.iter_mut().zip(1..) {
             ui.label(palette.small(format!("{} · {}", row.response, row.entry)));
-            if let Some(percent) =
-                field_ui(ui, &format!("Tolerance of the period {place}"), 100.0 * row.period, commands)
-            {
-                (row.period, is_changed) = (0.01 * percent, true);
-            }
+            field_ui(ui, &format!("Tolerance of the period {place}"), &mut row.period, IN_PERCENT, commands);
             let name = format!("Tolerance of the period {place} in seconds");
-            if let Some(seconds) = optional_field_ui(ui, &name, row.period_s, commands) {
-                (row.period_s, is_changed) = (seconds, true);
-            }
+            optional_field_ui(ui, &name, &mut row.period_s, AS_IT_IS, commands);
             let name = format!("Tolerance of the time to half {place}");
-            if let Some(percent) = field_ui(ui, &name, 100.0 * row.amplitude_time, commands) {
-                (row.amplitude_time, is_changed) = (0.01 * percent, true);
-            }
+            field_ui(ui, &name, &mut row.amplitude_time, IN_PERCENT, commands);
             let name = format!("Tolerance of the damping ratio {place}");
-            if let Some(ratio) = field_ui(ui, &name, row.damping_ratio, commands) {
-                (row.damping_ratio, is_changed) = (ratio, true);
-            }
+            field_ui(ui, &name, &mut row.damping_ratio, AS_IT_IS, commands);
             ui.end_row();
         }
     });
-    if is_changed {
+    if rows != table.rows() {
         commands.push(match ModeToleranceTable::try_from(rows) {
             Ok(table) => to(table),
             Err(why) => Command::Refuse(why.to_string()),
@@ -122,17 +121,11 @@ pub fn overview_limits_ui(ui: &mut Ui, state: &State, palette: &Palette, command
     let mut changed = limits;
     ui.horizontal_wrapped(|ui| {
         ui.label(palette.small("Of no standard: bandwidth ±"));
-        if let Some(percent) = field_ui(ui, "Limit of the bandwidth", 100.0 * limits.bandwidth, commands) {
-            changed.bandwidth = 0.01 * percent;
-        }
+        field_ui(ui, "Limit of the bandwidth", &mut changed.bandwidth, IN_PERCENT, commands);
         ui.label(palette.small("%, phase delay ±"));
-        if let Some(delay_ms) = field_ui(ui, "Limit of the phase delay", s_to_ms(limits.phase_delay_s), commands) {
-            changed.phase_delay_s = 1e-3 * delay_ms;
-        }
+        field_ui(ui, "Limit of the phase delay", &mut changed.phase_delay_s, IN_MILLISECONDS, commands);
         ui.label(palette.small("ms, time inside at least"));
-        if let Some(percent) = field_ui(ui, "Least time inside", 100.0 * limits.share_inside, commands) {
-            changed.share_inside = 0.01 * percent;
-        }
+        field_ui(ui, "Least time inside", &mut changed.share_inside, IN_PERCENT, commands);
         ui.label(palette.small("%"));
     });
     if changed != limits {
@@ -142,8 +135,7 @@ pub fn overview_limits_ui(ui: &mut Ui, state: &State, palette: &Palette, command
         });
     }
     if limits != OverviewLimits::default() && ui.small_button("Default limits").clicked() {
-        let default =
-            |settings: &mut gdcm_core::study::RequirementSettings| settings.overview = OverviewLimits::default();
-        commands.push(decided(state, "limits of the overview", default));
+        commands
+            .push(decided(state, "limits of the overview", |settings| settings.overview = OverviewLimits::default()));
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Button, CollapsingHeader, Color32, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
 use gdcm_core::study::{
@@ -11,7 +11,7 @@ use gdcm_core::study::{
     TimeHistoriesJob,
 };
 use gdcm_core::units::{s_to_ms, telling};
-use gdcm_files::figure::{Figure, FigureKind, MarkId, bandwidth_pairs, bandwidth_place};
+use gdcm_files::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
 
 use super::{Need, View, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
 use crate::view::CurveCommand;
@@ -22,7 +22,7 @@ use crate::view::palette::Palette;
 use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
 use crate::view::records::ConditionRecords;
 use crate::view::state::State;
-use crate::view::table_view::{TableClick, TableLook, table_grid_ui};
+use crate::view::tables::{TableClick, TableLook, table_grid_ui};
 
 /// What stands over every page.
 pub(super) const NO_QUALIFICATION: &str =
@@ -142,13 +142,12 @@ pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, c
 
 /// What has no answer, and what has to be known of the answers.
 fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
-    for missing in &requirements.missing {
+    let missing = requirements.missing.iter().map(|missing| {
         let condition = missing.condition.map_or_else(String::new, |id| format!("Condition {id}: "));
-        let words = format!("{condition}no {}: {}", missing.what, missing.why);
-        ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
-    }
-    for caution in &requirements.cautions {
-        let words = format!("⚠ Condition {}: {}", caution.condition, caution.text);
+        format!("{condition}no {}: {}", missing.what, missing.why)
+    });
+    let cautions = requirements.cautions.iter().map(|of| format!("⚠ Condition {}: {}", of.condition, of.text));
+    for words in missing.chain(cautions) {
         ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
     }
 }
@@ -208,18 +207,13 @@ fn plots_ui(
     let pairs = bandwidth_pairs(requirements);
     figure_legend_ui(ui, &figure, palette);
     let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let message = "No on-axis response is of an angle or its rate, or none crosses −135° and −180°: the table says why";
+    let words = BandwidthWords { state, requirements, pairs: &pairs };
     let scene = FigureScene {
-        name: "requirements",
-        figure: &figure,
         selected: Some(MarkId::Condition(state.condition().id())),
-        highlighted: None,
-        columns: &[],
         zooms: true,
-        is_compact: false,
         accented: pairs.iter().position(|pair| *pair == state.display.pair),
-        least: LEAST_PLOT,
-        message: "No on-axis response is of an angle or its rate, or none crosses −135° and −180°: the table says why",
-        words: (&BandwidthWords { state, requirements, pairs: &pairs }, 0),
+        ..FigureScene::new("requirements", &figure, LEAST_PLOT, message, &words)
     };
     for event in figure_ui(ui, &scene, &mut view, palette) {
         if let FigureEvent::Clicked(plot, MarkId::Condition(id), _) = event
@@ -257,30 +251,7 @@ fn marked_in_bode(requirements: &Requirements, (pair, id): (Pair, ConditionId), 
 /// A table of the page shown, and how its cells are coloured.
 struct ShownTable<'a> {
     table: Table,
-    color: Box<dyn Fn(usize, usize) -> CellLook + 'a>,
-}
-
-/// How a cell looks.
-#[derive(Clone, Copy, PartialEq)]
-enum CellLook {
-    Usual,
-    /// Beyond a limit.
-    Outside,
-    /// Within a limit.
-    Within,
-    /// Not to be relied on.
-    Dim,
-}
-
-impl CellLook {
-    fn color(self, palette: &Palette) -> Option<Color32> {
-        match self {
-            Self::Usual => None,
-            Self::Outside => Some(palette.warning),
-            Self::Within => Some(palette.good),
-            Self::Dim => Some(palette.dim_text),
-        }
-    }
+    color: Box<dyn Fn(usize, usize) -> Option<Hue> + 'a>,
 }
 
 /// The tables of the page that is shown.
@@ -301,7 +272,7 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
             let overview = requirements.overview(dataset, histories, &state.study.requirements.overview);
             let is_outside = {
                 let overview = overview.clone();
-                move |row, column| if overview.is_outside(row, column) { CellLook::Outside } else { CellLook::Usual }
+                move |row, column| overview.is_outside(row, column).then_some(Hue::Warning)
             };
             let table = requirements.summary_table(histories);
             let of_table = table.clone();
@@ -339,7 +310,7 @@ fn requirements_tables_ui(
                 ui.label(palette.dim(why.unwrap_or("Nothing: no condition has a result.")));
                 continue;
             }
-            let color = |row: usize, column: usize| color(row, column).color(palette);
+            let color = |row: usize, column: usize| color(row, column).map(|hue| palette.color(Color::of(hue)));
             let selected = |row: usize| table.columns[0] == "condition" && table.rows[row][0] == id.to_string();
             let look = TableLook { color: &color, selected: &selected };
             if let Some(click) = table_grid_ui(ui, &table, sorting, &look, palette, commands) {
@@ -370,38 +341,35 @@ fn went_to(state: &State, requirements: &Requirements, (table, click): (&Table, 
 }
 
 /// What rests on the model above the band is grey.
-fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> CellLook {
+fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> Option<Hue> {
     let names = ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
     let name = column.checked_sub(4).and_then(|at| names.get(at));
-    let rests = name.zip(requirements.bandwidth.get(row)).is_some_and(|(name, of)| of.rests_above(name));
-    if rests { CellLook::Dim } else { CellLook::Usual }
+    let (name, of) = name.zip(requirements.bandwidth.get(row))?;
+    of.rests_above(name).then_some(Hue::DimText)
 }
 
-fn mode_look(table: &Table, (row, column): (usize, usize)) -> CellLook {
+/// A mode within its tolerance, or outside of it; what has no verdict is grey.
+fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     if !table.columns[column].ends_with(": tolerance") {
-        return CellLook::Usual;
+        return None;
     }
     let is = |verdict: ModeVerdict| table.rows[row][column].starts_with(verdict.words());
-    match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
-        (true, _) => CellLook::Within,
-        (_, true) => CellLook::Outside,
-        _ => CellLook::Dim,
-    }
+    Some(match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
+        (true, _) => Hue::Good,
+        (_, true) => Hue::Warning,
+        _ => Hue::DimText,
+    })
 }
 
 /// Mean J beyond what is acceptable; of the rms error nothing says what is.
-fn summary_look(requirements: &Requirements, table: &Table, (row, column): (usize, usize)) -> CellLook {
+fn summary_look(requirements: &Requirements, table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     let of = requirements.summary_of(&table.rows[row]);
     let cost = match table.columns[column].as_str() {
         "J on-axis" => of.and_then(|of| of.mean_j_on_axis),
         "J of all" => of.and_then(|of| of.mean_j_all),
         _ => None,
     };
-    match cost {
-        None => CellLook::Usual,
-        Some(cost) if cost > ACCEPTABLE => CellLook::Outside,
-        Some(_) => CellLook::Within,
-    }
+    cost.map(|cost| if cost > ACCEPTABLE { Hue::Warning } else { Hue::Good })
 }
 
 /// J up to which a model is acceptable (M4).

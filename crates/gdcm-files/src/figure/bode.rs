@@ -1,23 +1,24 @@
-//! Responses of one condition or of several on paper: magnitude above phase over frequency (Figures 2 and 5).
+//! Responses of one condition or of several on paper: magnitude above phase over frequency (Figures 2 and 5), and below them the coherence
+//! of those measured: where it is low, magnitude and phase above are guesses.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use gdcm_core::dataset::{Band as BandOfComparison, ConditionId, ModelId, Pair};
+use gdcm_core::dataset::{Band as BandOfComparison, BundleKind, ConditionId, Dynamics, ModelId, Pair};
+use gdcm_core::identification::TRUSTED_COHERENCE;
 use gdcm_core::study::{AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band};
 use gdcm_core::units::db_to_ratio;
 
-use super::axis::{Axis, Range};
-use super::coherence::coherence_panel;
+use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Range};
 use super::condition_source::{ConditionSource, CurveId, settings_words};
-use super::curve::{BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::error::muad_about;
-use super::figure::{Figure, Panel, Plot};
-use super::mark::{Along, Band, Curve, Envelope, Mark, Note, Place, Rule};
-use super::responses::{AirspeedCache, ResponseCache, airspeed_curves, fitted_values, uncertainty_bands};
+use super::figure::{Band, Curve, Envelope, Figure, Mark, Note, Panel, Place, Plot, Rule};
+use super::responses::{
+    AirspeedCache, BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine, ResponseCache, airspeed_curves,
+    fitted_values, uncertainty_bands,
+};
 use super::role::Role;
-use super::units::{FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 /// The ground of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
@@ -78,13 +79,13 @@ impl BodeOptions {
     /// The ground of the band of comparison.
     fn band(&self, band: BandOfComparison) -> Band {
         let range = self.in_unit(band.min(), band.max());
-        Band { along: Along::X, range, color: BAND, key: Some("band of comparison".to_owned()) }
+        Band { range, color: BAND, key: "band of comparison".to_owned() }
     }
 
     /// The ground of the frequencies above the band where a model with leads is not valid.
     fn invalid(&self, band: BandOfComparison, up_to: f64) -> Band {
         let range = self.in_unit(band.max(), up_to);
-        Band { along: Along::X, range, color: INVALID, key: Some("not valid with leads".to_owned()) }
+        Band { range, color: INVALID, key: "not valid with leads".to_owned() }
     }
 }
 
@@ -134,10 +135,9 @@ impl FrequencyPanels<'_> {
         let references: Vec<Mark> =
             references.map(|line| reference_mark(line, omega, self.options.unit, &shown)).collect();
         let strips = self.strips.iter().map(|&(from, to)| Band {
-            along: Along::X,
             range: self.options.in_unit(from, to),
             color: NOTICED,
-            key: Some("what is left would be noticed".to_owned()),
+            key: "what is left would be noticed".to_owned(),
         });
         let bands = self.bands.iter().map(|band| self.envelope(band, pane, &shown));
         let panel = Panel::new(self.options.frequency_axis(), axis).with_all(strips).with_all(bands);
@@ -166,9 +166,8 @@ fn reference_mark(line: &ReferenceLine, omega: &[f64], unit: FrequencyUnit, show
         Level::Sampled(points) => points.clone(),
         level => omega.iter().map(|omega| [*omega, level.at(*omega)]).collect(),
     };
-    let (x, y): (Vec<f64>, Vec<f64>) =
-        points.iter().map(|[omega, value]| (unit.of_omega(*omega), shown(*value))).unzip();
-    Curve::new(&line.label, stroke, x, y).key(line.kind.key()).into()
+    let points = points.iter().map(|[omega, value]| [unit.of_omega(*omega), shown(*value)]);
+    Curve::through(&line.label, stroke, points).key(line.kind.key()).into()
 }
 
 /// A figure of a plot of each of `pairs`, beside one another; where it is one, that one names the figure.
@@ -303,4 +302,59 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
     let figure =
         Figure::new(source.condition_words()).caption(format!("{} * held exactly.", source.caption())).plots(plots);
     figure.columns(dataset.inputs().len()).dense().shared_x().aspect(0.55)
+}
+
+/// Height of the strip, where that of the phase is 1.
+const WEIGHT: f64 = 0.45;
+/// Where coherence is trusted.
+const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
+
+/// Coherence of one measured response.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoherenceCurve {
+    /// The model's name.
+    pub label: String,
+    /// How its response is drawn.
+    pub role: Role,
+    /// Whether the model is rejected.
+    pub rejected: bool,
+    /// Frequencies \[rad/s\] and coherence, 0 to 1.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl ConditionSource<'_> {
+    /// The coherence of a response of every identified model that is shown and was measured with it; the representative last.
+    pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
+        let bundle = self.curves.condition.bundle(BundleKind::Identified);
+        let models = self.models(BundleKind::Identified, options).into_iter().filter(|model| !model.hidden);
+        let curve = |model: super::condition_source::SourceModel| {
+            let Dynamics::Measured(response) = &bundle[model.index].dynamics else { return None };
+            let coherence = response.coherence()?.get(pair)?;
+            let points = response.omega().iter().zip(coherence).map(|(omega, value)| [*omega, *value]).collect();
+            Some(CoherenceCurve { label: model.id.name, role: model.role, rejected: model.rejected, points })
+        };
+        let mut curves: Vec<CoherenceCurve> = models.filter_map(curve).collect();
+        curves.sort_by_key(|curve| curve.role.layer(curve.rejected));
+        curves
+    }
+
+    /// From which coherence on a frequency counts: that of the settings, else what is usual.
+    pub fn least_coherence(&self) -> f64 {
+        self.study.settings.coherence_threshold.unwrap_or(TRUSTED_COHERENCE)
+    }
+}
+
+/// The strip below a Bode plot; none where nothing was measured with coherence.
+pub(super) fn coherence_panel(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Option<Panel> {
+    let curves = source.coherence_curves(pair, options);
+    if curves.is_empty() {
+        return None;
+    }
+    let curves = curves.into_iter().map(|curve| {
+        let points = curve.points.iter().map(|[omega, value]| [options.unit.of_omega(*omega), *value]);
+        Curve::through(format!("coherence of {}", curve.label), curve.role.stroke(curve.rejected), points)
+    });
+    let axis = Axis::linear("Coherence").showing(Some(Range::new(0.0, 1.05)));
+    let trusted = Rule::horizontal(source.least_coherence(), TRUSTED);
+    Some(Panel::new(options.frequency_axis(), axis).with(trusted).with_all(curves).weight(WEIGHT))
 }

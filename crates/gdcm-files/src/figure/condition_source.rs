@@ -10,10 +10,10 @@ use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQua
 use gdcm_core::study::{ConditionAnalysis, ConditionCurves, CouplingCorrection, PhaseCorrection, Settings, Study};
 use gdcm_core::units::s_to_ms;
 
+use super::axis::compact;
 use super::bode::BodeOptions;
-use super::curve::BodeCurve;
+use super::responses::BodeCurve;
 use super::role::Role;
-use super::ticks::compact;
 
 /// What the figures of one condition are made of.
 #[derive(Clone, Copy, Debug)]
@@ -89,8 +89,7 @@ impl<'a> ConditionSource<'a> {
 
     /// `Condition 10: 60 kt, low altitude, high weight`.
     pub(super) fn condition_words(&self) -> String {
-        let FlightState { id, name, .. } = self.curves.condition.flight_state();
-        if name.is_empty() { format!("Condition {id}") } else { format!("Condition {id}: {name}") }
+        condition_words(self.curves.condition.flight_state())
     }
 
     /// Dataset, condition, settings, and which models are rejected.
@@ -192,6 +191,11 @@ impl<'a> ConditionSource<'a> {
         });
         own.into_iter().chain(scheduled).chain(without).chain(coupled).chain(variant).collect()
     }
+}
+
+/// `Condition 10: 60 kt, low altitude, high weight`.
+pub(crate) fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
+    if name.is_empty() { format!("Condition {id}") } else { format!("Condition {id}: {name}") }
 }
 
 /// The dataset, and the settings that every figure of the analysis rests on.

@@ -383,7 +383,9 @@ fn distance([x, y]: [f64; 2], [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::drawing::*;
+    use proptest::prelude::*;
+
+    use super::*;
 
     #[test]
     fn a_tint_lies_between_the_colour_and_white() {
@@ -392,12 +394,6 @@ mod tests {
         assert_eq!(color.tint(0).rgb(), [255, 255, 255]);
         assert_eq!(color.tint(50).rgb(), [227, 151, 151]);
     }
-}
-
-#[cfg(test)]
-mod tests2 {
-    use super::super::drawing::*;
-    use proptest::prelude::*;
 
     #[test]
     fn points_on_a_straight_line_are_left_out() {

@@ -8,13 +8,12 @@ use gdcm_core::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wr
 use gdcm_core::study::{ConditionAnalysis, ConditionCurves};
 use gdcm_core::units::{ratio_to_db, s_to_ms};
 
-use super::axis::Axis;
+use super::axis::{Axis, PhaseErrorUnit};
 use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};
 use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
-use super::curve::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::figure::{Figure, Plot};
+use super::responses::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::role::Role;
-use super::units::PhaseErrorUnit;
 
 /// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
 /// correction, with G, D and the bounds.
@@ -209,13 +208,13 @@ fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
         PhaseErrorUnit::Millisecond => s_to_ms(degrees.to_radians() / omega),
     };
     let ends = [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")];
-    let rules = ends.into_iter().flat_map(|(end, label)| {
+    let rules = |(end, label): (usize, &str)| {
         [
             muad_line(Pane::Magnitude, label, omega, |_, omega| -Muad::at(omega).magnitude_db[end]),
             muad_line(Pane::Phase, label, omega, |_, omega| phase(omega, Muad::at(omega).phase_deg[end])),
         ]
-    });
-    rules.collect()
+    };
+    ends.into_iter().flat_map(rules).collect()
 }
 
 /// The same envelopes about the identified representative among `drawn`, hidden or not: a response within both cannot be told from
@@ -225,19 +224,19 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     let Some(curve) = identified.filter(|_| options.shows_muad) else { return Vec::new() };
     let (omega, magnitude_db, phase_deg) = (&curve.omega, &curve.magnitude_db, &curve.phase_deg);
     let ends = [(0, "unnoticed above, MUAD"), (1, "unnoticed below, MUAD")];
-    let lines = ends.into_iter().flat_map(|(end, label)| {
+    let lines = |(end, label): (usize, &str)| {
         [
             muad_line(Pane::Magnitude, label, omega, |k, omega| magnitude_db[k] + Muad::at(omega).magnitude_db[end]),
             muad_line(Pane::Phase, label, omega, |k, omega| phase_deg[k] + Muad::at(omega).phase_deg[end]),
         ]
-    });
-    lines.collect()
+    };
+    ends.into_iter().flat_map(lines).collect()
 }
 
 /// An envelope over `omega` \[rad/s\]; `value` gets the number of a frequency and the frequency.
 fn muad_line(pane: Pane, label: &str, omega: &[f64], value: impl Fn(usize, f64) -> f64) -> ReferenceLine {
     let level = Level::Sampled(omega.iter().enumerate().map(|(k, &omega)| [omega, value(k, omega)]).collect());
-    ReferenceLine { note: String::new(), pane, kind: ReferenceKind::Envelope, label: label.to_owned(), level }
+    ReferenceLine::new(pane, ReferenceKind::Envelope, label, level)
 }
 
 /// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`, where that is asked for.
@@ -265,11 +264,11 @@ fn delay_rule(kind: ReferenceKind, label: String, delay_s: f64, unit: PhaseError
         PhaseErrorUnit::Degree => Level::PerOmega(delay_s.to_degrees()),
         PhaseErrorUnit::Millisecond => Level::Constant(s_to_ms(delay_s)),
     };
-    ReferenceLine { note: String::new(), pane: Pane::Phase, kind, label, level }
+    ReferenceLine::new(Pane::Phase, kind, label, level)
 }
 
 fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
-    ReferenceLine { note: String::new(), pane: Pane::Magnitude, kind, label, level: Level::Constant(ratio_to_db(gain)) }
+    ReferenceLine::new(Pane::Magnitude, kind, label, Level::Constant(ratio_to_db(gain)))
 }
 
 fn signed(value: f64) -> String {
@@ -313,14 +312,10 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Refere
         .into_iter()
         .flat_map(|q| {
             let level = Level::Constant(quantile(&mut ratios_db, q));
-            let of_magnitude = ReferenceLine {
-                note: String::new(),
-                pane: Pane::Magnitude,
-                kind: ReferenceKind::Quantile,
-                label: label(q),
-                level,
-            };
-            [of_magnitude, delay_rule(ReferenceKind::Quantile, label(q), quantile(&mut delays_s, q), unit)]
+            [
+                ReferenceLine::new(Pane::Magnitude, ReferenceKind::Quantile, label(q), level),
+                delay_rule(ReferenceKind::Quantile, label(q), quantile(&mut delays_s, q), unit),
+            ]
         })
         .collect()
 }

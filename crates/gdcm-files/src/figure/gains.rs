@@ -9,13 +9,13 @@ use gdcm_core::study::{AirspeedDifference, Analysis, ConditionAnalysis, Conditio
 use gdcm_core::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_core::units::s_to_ms;
 
-use super::axis::{Axis, Range};
+use super::axis::{Axis, Range, decimals};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Figure, Panel, Plot};
-use super::mark::{Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Intervals, Mark, MarkId, Rule, Spans};
+use super::figure::{
+    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId, Panel, Plot, Rule, Spans,
+};
 use super::role::Role;
-use super::ticks::decimals;
 
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;
@@ -72,6 +72,12 @@ impl Measure {
         }
     }
 
+    /// The schedule, where it has values of this measure over this axis.
+    pub fn schedule_of(self, analysis: &Analysis, across: Across) -> Option<&Schedule> {
+        let has_values = |schedule: &&Schedule| self == Self::Gain || schedule.has_delays();
+        analysis.schedule.as_ref().ok().filter(|_| across == Across::Airspeed).filter(has_values)
+    }
+
     /// What stands beside an axis of values of a channel.
     pub fn axis_label(self) -> &'static str {
         match self {
@@ -124,14 +130,11 @@ impl Classes {
     }
 }
 
-/// A figure of a correction.
-type FigureOf = Box<dyn Fn(&ChannelCorrection) -> f64>;
-
 /// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7); with bars and bands where
 /// `uncertainty` says how sure they are.
 pub fn net_gain_figure(analysis: &Analysis, uncertainty: Option<&Uncertainty>, pairs: &[Pair]) -> Figure {
     let plots = pairs.iter().map(|&pair| {
-        let panel = GainQuantity::net_gain(pair).panel(analysis, uncertainty, Across::Airspeed, "Net gain [-]");
+        let panel = GainQuantity::NetGain(pair).panel(analysis, uncertainty, Across::Airspeed, "Net gain [-]");
         Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
     });
     let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
@@ -143,12 +146,10 @@ pub fn add_variant(figure: &mut Figure, quantities: &[GainQuantity], analysis: &
     let (role, across) = (Role::Variant.stroke(false), Across::Airspeed);
     let key = format!("variant {name}");
     for (panel, quantity) in figure.plots.iter_mut().flat_map(|plot| plot.panels.first_mut()).zip(quantities) {
-        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| quantity.is_scheduled(schedule, across));
-        let curve = schedule.map(|schedule| {
-            let (x, y): (Vec<f64>, Vec<f64>) = quantity.samples(schedule).into_iter().map(|[x, y]| (x, y)).unzip();
-            Mark::Curve(Curve::new(format!("schedule of {key}"), role, x, y))
-        });
-        let of = places(analysis, across).map(|(x, _, result)| (x, (quantity.of)(&result.correction)));
+        let schedule = quantity.measure().schedule_of(analysis, across);
+        let curve = schedule
+            .map(|schedule| Curve::through(format!("schedule of {key}"), role, quantity.samples(schedule)).into());
+        let of = places(analysis, across).map(|(x, _, result)| (x, quantity.of(&result.correction)));
         let empty = Dots { size: 0.7, ..Dots::new(&key, DotShape::Square, role.color).filled(false).key(&key) };
         let dots = Mark::Dots(of.fold(empty, |dots, (x, y)| dots.dot(x, y, "")));
         let behind = panel.marks.iter().position(|mark| matches!(mark, Mark::Dots(_))).unwrap_or(panel.marks.len());
@@ -207,16 +208,10 @@ pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect()
 }
 
-/// Whether a schedule has values of this measure, over this axis.
-fn is_scheduled(schedule: &Schedule, measure: Measure, across: Across) -> bool {
-    across == Across::Airspeed && (measure == Measure::Gain || schedule.has_delays())
-}
-
 fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
-    let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, measure, across));
-    if schedule.is_some() {
+    if measure.schedule_of(analysis, across).is_some() {
         caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
     }
     if across == Across::Airspeed {
@@ -226,52 +221,59 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     caption
 }
 
-/// A figure of every condition's correction, and of the schedule.
-pub struct GainQuantity {
-    /// What it measures.
-    pub measure: Measure,
-    /// The figure itself, in the unit of the measure.
-    pub of: FigureOf,
-    /// The same, as bars know it.
-    pub scalar: Scalar,
+/// A value of every condition's correction, and of the schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GainQuantity {
+    /// The net gain of a response.
+    NetGain(Pair),
+    /// The gain of a channel.
+    Gain(Channel),
+    /// The delay of a channel.
+    Delay(Channel),
 }
 
 impl GainQuantity {
-    /// The net gain of a response.
-    pub fn net_gain(pair: Pair) -> Self {
-        let of: FigureOf = Box::new(move |correction| correction.net_gain(pair));
-        Self { measure: Measure::Gain, of, scalar: Scalar::NetGain(pair) }
-    }
-
     /// Gain or delay of a channel.
     pub fn of_channel(channel: Channel, measure: Measure) -> Self {
-        let of: FigureOf = Box::new(move |correction| match (measure, channel) {
-            (Measure::Gain, Channel::Input(input)) => correction.input_gains[input],
-            (Measure::Gain, Channel::Output(output)) => correction.output_gains[output],
-            (Measure::Delay, channel) => s_to_ms(correction.delay_s(channel)),
-        });
-        let scalar = match measure {
-            Measure::Gain => Scalar::ChannelGain(channel),
-            Measure::Delay => Scalar::ChannelDelay(channel),
-        };
-        Self { measure, of, scalar }
-    }
-
-    /// Between which values the optimum of a condition was looked for; none of a net gain, which has no bounds of its own.
-    pub fn bounds(&self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
-        match self.scalar {
-            Scalar::ChannelGain(_) => Some([result.gain_bounds().lower, result.gain_bounds().upper]),
-            Scalar::ChannelDelay(_) => Some(result.delay_bounds_s().map(s_to_ms)),
-            _ => None,
+        match measure {
+            Measure::Gain => Self::Gain(channel),
+            Measure::Delay => Self::Delay(channel),
         }
     }
 
-    /// Whether a schedule has it, over this axis.
-    pub fn is_scheduled(&self, schedule: &Schedule, across: Across) -> bool {
-        is_scheduled(schedule, self.measure, across)
+    /// What it measures.
+    pub fn measure(self) -> Measure {
+        if matches!(self, Self::Delay(_)) { Measure::Delay } else { Measure::Gain }
     }
 
-    fn panel(&self, analysis: &Analysis, uncertainty: Option<&Uncertainty>, across: Across, label: &str) -> Panel {
+    /// What it is of a correction, in the unit of the measure.
+    pub fn of(self, correction: &ChannelCorrection) -> f64 {
+        match self {
+            Self::NetGain(pair) => correction.net_gain(pair),
+            Self::Gain(channel) => correction.gain(channel),
+            Self::Delay(channel) => s_to_ms(correction.delay_s(channel)),
+        }
+    }
+
+    /// The same, as bars know it.
+    pub fn scalar(self) -> Scalar {
+        match self {
+            Self::NetGain(pair) => Scalar::NetGain(pair),
+            Self::Gain(channel) => Scalar::ChannelGain(channel),
+            Self::Delay(channel) => Scalar::ChannelDelay(channel),
+        }
+    }
+
+    /// Between which values the optimum of a condition was looked for; none of a net gain, which has no bounds of its own.
+    pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
+        match self {
+            Self::NetGain(_) => None,
+            Self::Gain(_) => Some([result.gain_bounds().lower, result.gain_bounds().upper]),
+            Self::Delay(_) => Some(result.delay_bounds_s().map(s_to_ms)),
+        }
+    }
+
+    fn panel(self, analysis: &Analysis, uncertainty: Option<&Uncertainty>, across: Across, label: &str) -> Panel {
         let conditions = analysis.study.dataset.conditions();
         let x = match across {
             Across::Airspeed => Axis::linear("Airspeed [kt]").at_least(10.0),
@@ -282,33 +284,31 @@ impl GainQuantity {
         let bars = uncertainty.map(|of| self.bars(analysis, of, across)).unwrap_or_default();
         let brackets = uncertainty.map(|of| self.brackets(analysis, of, across)).unwrap_or_default();
         let y = self.value_axis(analysis, &bars, label);
-        let schedule = analysis.schedule.as_ref().ok().filter(|schedule| is_scheduled(schedule, self.measure, across));
+        let schedule = self.measure().schedule_of(analysis, across);
         let samples: Vec<[f64; 2]> = schedule.map(|schedule| self.samples(schedule)).unwrap_or_default();
         let bands = schedule.zip(uncertainty.and_then(|of| of.bands.as_ref()));
-        let bands = bands.map(|(schedule, bands)| self.bands(&samples, |at| bands.at(schedule, self.scalar, at)));
-        let curve = schedule.map(|_| {
-            let (x, y): (Vec<f64>, Vec<f64>) = samples.iter().map(|[x, y]| (*x, *y)).unzip();
-            Curve::new("schedule", Role::Scheduled.stroke(false), x, y).key("schedule")
-        });
+        let bands = bands.map(|(schedule, bands)| self.bands(&samples, |at| bands.at(schedule, self.scalar(), at)));
+        let curve =
+            schedule.map(|_| Curve::through("schedule", Role::Scheduled.stroke(false), samples).key("schedule"));
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
-        let panel = panel.with(Rule::horizontal(self.measure.null(), NULL)).with_all(bands.into_iter().flatten());
+        let panel = panel.with(Rule::horizontal(self.measure().null(), NULL)).with_all(bands.into_iter().flatten());
         let panel = panel.with_all(curve).with_all(bars).with_all(brackets);
         panel.with_all(self.dots(analysis, across))
     }
 
     /// Samples of the scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
-    fn samples(&self, schedule: &Schedule) -> Vec<[f64; 2]> {
+    fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
         let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-        (0..=SAMPLES).map(airspeed).map(|at| [at, (self.of)(&schedule.at(at))]).collect()
+        (0..=SAMPLES).map(airspeed).map(|at| [at, self.of(&schedule.at(at))]).collect()
     }
 
     /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
-    fn bars(&self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Intervals> {
-        let told = |end: f64| if self.scalar.is_delay() { s_to_ms(end) } else { end.exp() };
+    fn bars(self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Intervals> {
+        let told = |end: f64| if self.scalar().is_delay() { s_to_ms(end) } else { end.exp() };
         let ends = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
             let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
-                let [low, high] = of(uncertainty.bar(state.id, self.scalar)?)?.map(told);
+                let [low, high] = of(uncertainty.bar(state.id, self.scalar())?)?.map(told);
                 Some([x, low, high])
             };
             places(analysis, across).filter_map(bar).collect()
@@ -322,13 +322,13 @@ impl GainQuantity {
     }
 
     /// For each airspeed the difference that is the largest multiple of what is expected (M13.4).
-    fn brackets(&self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Brackets> {
-        let (Scalar::NetGain(pair), Across::Airspeed) = (self.scalar, across) else { return Vec::new() };
+    fn brackets(self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Brackets> {
+        let (Self::NetGain(pair), Across::Airspeed) = (self, across) else { return Vec::new() };
         let level = uncertainty.level;
         let of = |beyond: bool| {
             let found = uncertainty.greatest_differences(pair).into_iter();
             let bracket = |difference: &AirspeedDifference| {
-                let value = |id| Some((self.of)(&analysis.condition(id)?.correction));
+                let value = |id| Some(self.of(&analysis.condition(id)?.correction));
                 let [one, other] = difference.conditions.map(value);
                 let label = difference.difference.ratio().filter(|_| beyond).map(|ratio| format!("{ratio:.1}×"));
                 Some(Bracket { x: difference.airspeed_kt, ends: [one?, other?], label: label.unwrap_or_default() })
@@ -341,9 +341,9 @@ impl GainQuantity {
     }
 
     /// The axis of values: bars are seen as far as they leave the dots their room.
-    fn value_axis(&self, analysis: &Analysis, bars: &[Intervals], label: &str) -> Axis {
-        let axis = Axis::linear(label).including(self.measure.null()).at_least(self.measure.least_height());
-        let values = places(analysis, Across::Airspeed).map(|(.., result)| (self.of)(&result.correction));
+    fn value_axis(self, analysis: &Analysis, bars: &[Intervals], label: &str) -> Axis {
+        let axis = Axis::linear(label).including(self.measure().null()).at_least(self.measure().least_height());
+        let values = places(analysis, Across::Airspeed).map(|(.., result)| self.of(&result.correction));
         let Some(range) = Range::of(values) else { return axis };
         let spare = OF_BARS * range.width();
         let ends = bars.iter().flat_map(|bars| &bars.ends).flat_map(|[_, low, high]| [low, high]);
@@ -351,7 +351,7 @@ impl GainQuantity {
     }
 
     /// Both bands about the samples of the schedule, as wide as `widths` says at an airspeed \[kt\].
-    fn bands(&self, samples: &[[f64; 2]], widths: impl Fn(f64) -> Option<BandWidths>) -> Vec<Envelope> {
+    fn bands(self, samples: &[[f64; 2]], widths: impl Fn(f64) -> Option<BandWidths>) -> Vec<Envelope> {
         let widths: Vec<_> = samples.iter().filter_map(|[x, value]| Some((*x, *value, widths(*x)?))).collect();
         let color = Role::Scheduled.stroke(false).color;
         let of = |name: &str, dash: Dash, percent: u8, half: fn(&BandWidths) -> f64| {
@@ -368,7 +368,7 @@ impl GainQuantity {
     }
 
     /// Where each optimum was looked for.
-    fn spans(&self, analysis: &Analysis, across: Across) -> Option<Spans> {
+    fn spans(self, analysis: &Analysis, across: Across) -> Option<Spans> {
         let width = match across {
             Across::Airspeed => BOUNDS_WIDTHS[0],
             Across::Conditions => BOUNDS_WIDTHS[1],
@@ -382,7 +382,7 @@ impl GainQuantity {
     }
 
     /// One group of dots for each class of conditions, and one of those that are not in the schedule.
-    fn dots(&self, analysis: &Analysis, across: Across) -> Vec<Dots> {
+    fn dots(self, analysis: &Analysis, across: Across) -> Vec<Dots> {
         let classes = Classes::of(&analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
         for (x, state, result) in places(analysis, across) {
@@ -391,7 +391,7 @@ impl GainQuantity {
             let name = class_words(state, choice);
             // Over conditions the axis has their numbers.
             let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
-            let dot = Dot { x, y: (self.of)(&result.correction), label, id: Some(MarkId::Condition(state.id)) };
+            let dot = Dot { x, y: self.of(&result.correction), label, id: Some(MarkId::Condition(state.id)) };
             match groups.iter_mut().find(|group| group.name == name) {
                 Some(group) => group.dots.push(dot),
                 None => {
@@ -422,11 +422,15 @@ fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &Fl
     })
 }
 
+/// `low altitude` and `high weight`, where a condition has these classes.
+pub(crate) fn class_names(state: &FlightState) -> [Option<String>; 2] {
+    let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
+    [class(&state.altitude, "altitude"), class(&state.weight, "weight")]
+}
+
 /// `low altitude, high weight`; `optimum` of a condition without classes.
 fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
-    let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
-    let mut words: Vec<String> =
-        [class(&state.altitude, "altitude"), class(&state.weight, "weight")].into_iter().flatten().collect();
+    let mut words: Vec<String> = class_names(state).into_iter().flatten().collect();
     if words.is_empty() {
         words.push("optimum".to_owned());
     }

@@ -4,11 +4,9 @@ use gdcm_core::message_text::sanitized;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 
-use super::axis::{Axis, Range};
+use super::axis::{Axis, Range, Tick, ticks};
 use super::drawing::Area;
-use super::figure::{Figure, Panel};
-use super::mark::Along;
-use super::ticks::{Tick, ticks};
+use super::figure::{Along, Figure, Panel};
 
 /// Size of numbers at ticks, of the legend, of the caption and of texts at dots \[pt\]: the least that journals take.
 pub(super) const SMALL_PT: f64 = 7.0;
@@ -249,7 +247,7 @@ fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     match &axis.names {
         // Names are as wide as they are: the first guess has seen all of them.
         Some(_) => ticks,
-        None => super::ticks::ticks(axis, range, length_pt, apart(&ticks).max(12.0)),
+        None => super::axis::ticks(axis, range, length_pt, apart(&ticks).max(12.0)),
     }
 }
 
@@ -306,7 +304,7 @@ pub(super) fn wrapped(text: &str, most: f64) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::layout::*;
+    use super::*;
 
     #[test]
     fn every_sign_that_figures_use_has_a_glyph() {

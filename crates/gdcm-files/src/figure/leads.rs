@@ -7,9 +7,8 @@ use gdcm_core::response::GainDelay;
 use super::axis::{Axis, Range};
 use super::condition_source::ConditionSource;
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Figure, Panel, Plot};
+use super::figure::{Band, Curve, Figure, Panel, Plot, Rule};
 use super::gains::all_channels;
-use super::mark::{Along, Band, Curve, Rule};
 use super::role::Role;
 
 /// Points of a curve.
@@ -84,8 +83,7 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
 /// The ground of what lies beyond the band, whose entry in the legend says so, and the line where it begins.
 fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
     let range = Range::new(price.limit_rad_s, price.above_rad_s());
-    let ground =
-        Band { along: Along::X, range, color: Color::of(Hue::Warning).tint(14), key: Some(price.limit_words()) };
+    let ground = Band { range, color: Color::of(Hue::Warning).tint(14), key: price.limit_words() };
     panel.over(ground).with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 
@@ -100,7 +98,7 @@ mod tests {
     use gdcm_core::dataset::ConditionId;
     use gdcm_core::study::{Engine, PhaseCorrection, Study, Unobserved, setting};
 
-    use super::super::mark::Mark;
+    use super::super::figure::Mark;
     use super::*;
     use crate::embedded_example;
 

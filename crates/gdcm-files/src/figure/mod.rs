@@ -30,59 +30,44 @@ use gdcm_core::study::{
 mod assessment;
 mod axis;
 mod bode;
-mod coherence;
 mod condition_source;
-mod couplings;
-mod curve;
 mod drawing;
 mod error;
-mod evidence;
 #[expect(clippy::module_inception, reason = "the room is named by what it makes")]
 mod figure;
 mod gains;
-mod histories;
 mod label_places;
 mod layout;
 mod leads;
-mod mark;
 mod paint;
 mod poles;
 mod requirements;
 mod responses;
 mod role;
 mod tables;
-mod ticks;
-mod units;
 
 pub use assessment::*;
 pub use axis::*;
 pub use bode::*;
-pub use coherence::*;
 pub use condition_source::*;
-pub use couplings::*;
-pub use curve::*;
 pub use drawing::*;
 pub use error::*;
-pub use evidence::*;
 pub use figure::*;
 pub use gains::*;
-pub use histories::*;
 pub use label_places::*;
 pub use layout::*;
 pub use leads::*;
-pub use mark::*;
 pub use paint::*;
 pub use poles::*;
 pub use requirements::*;
 pub use responses::*;
 pub use role::*;
-pub use ticks::*;
-pub use units::*;
 
 /// Which of the program's figures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FigureKind {
     /// Responses of one condition (Figures 2 and 5).
+    #[default]
     Bode,
     /// What the fit sees of them.
     Error,
@@ -164,7 +149,7 @@ pub enum OverTime {
 }
 
 /// Which figure is wanted.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureRequest {
     /// Which.
     pub kind: FigureKind,
@@ -193,21 +178,7 @@ pub struct FigureRequest {
 impl FigureRequest {
     /// A figure of these responses and channels, shown as usual.
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
-        let (measure, across) = (Measure::default(), Across::default());
-        let (across_role, bode) = (AcrossRole::default(), BodeOptions::default());
-        Self {
-            kind,
-            pairs,
-            channels,
-            measure,
-            across,
-            assessed: None,
-            across_role,
-            bode,
-            couplings: None,
-            requirements: None,
-            over_time: None,
-        }
+        Self { kind, pairs, channels, ..Self::default() }
     }
 
     /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
@@ -241,13 +212,13 @@ impl FigureRequest {
             FigureKind::Requirements => {
                 let study = &analysis?.study;
                 match &self.over_time {
-                    Some(OverTime::Test(answers)) => return Some(test_answers_figure(answers, &study.dataset)),
-                    Some(OverTime::Record(history, input)) => {
-                        return Some(record_history_figure(history, &study.dataset, *input));
+                    Some(OverTime::Test(answers)) => test_answers_figure(answers, &study.dataset),
+                    Some(OverTime::Record(history, input)) => record_history_figure(history, &study.dataset, *input),
+                    None => {
+                        let requirements = self.requirements.as_deref()?;
+                        requirements_figure(requirements, &study.dataset, &study.requirements.levels)
                     }
-                    None => {}
                 }
-                requirements_figure(self.requirements.as_deref()?, &study.dataset, &study.requirements.levels)
             }
             FigureKind::Couplings => {
                 let shown = condition.map(|of| of.curves.condition.id());

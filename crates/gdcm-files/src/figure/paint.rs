@@ -2,12 +2,12 @@
 
 use super::axis::{Axis, Range};
 use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text, simplified};
-use super::figure::{ColumnWidth, Figure, Panel};
+use super::figure::{
+    Along, Bars, Bracket, Brackets, ColumnWidth, Curve, DotShape, Dots, Envelope, Figure, Guide, Intervals, Mark, Note,
+    Panel, Place, Rule, Spans,
+};
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
-use super::mark::{
-    Along, Bars, Bracket, Brackets, Curve, DotShape, Dots, Envelope, Guide, Intervals, Mark, Note, Place, Rule, Spans,
-};
 use super::role::{Entry, Sample};
 
 /// Size of the title \[pt\].
@@ -159,14 +159,15 @@ impl Placed<'_> {
 
     /// The line across the frame at a value.
     fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
+        let ends = [0.0, 1.0];
         Some(match along {
             Along::X => {
                 let x = self.panel.x.fraction(value, self.x.range)?;
-                [self.frame.at(x, 0.0), self.frame.at(x, 1.0)]
+                ends.map(|y| self.frame.at(x, y))
             }
             Along::Y => {
                 let y = self.panel.y.fraction(value, self.y.range)?;
-                [self.frame.at(0.0, y), self.frame.at(1.0, y)]
+                ends.map(|x| self.frame.at(x, y))
             }
         })
     }
@@ -182,10 +183,8 @@ impl Placed<'_> {
     }
 
     /// Whether a place on paper is in the frame, or on its edge up to rounding.
-    fn shows(&self, [x, y]: [f64; 2]) -> bool {
-        let slack = 0.5;
-        let Area { left, top, width, height } = self.frame;
-        Area::new(left - slack, top - slack, width + 2.0 * slack, height + 2.0 * slack).contains([x, y])
+    fn shows(&self, place: [f64; 2]) -> bool {
+        self.frame.expanded(0.5).contains(place)
     }
 }
 
@@ -231,14 +230,9 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
 fn bands(placed: &Placed<'_>) -> Vec<Shape> {
     let band = |mark: &Mark| {
         let Mark::Band(band) = mark else { return None };
-        let Range { min, max } = band.range;
-        let ([from, to], [far_from, far_to]) = (placed.across(band.along, min)?, placed.across(band.along, max)?);
-        Some(Shape::Path {
-            points: vec![from, to, far_to, far_from],
-            closed: true,
-            fill: Some(band.color),
-            stroke: None,
-        })
+        let ([from, _], [_, far]) =
+            (placed.across(Along::X, band.range.min)?, placed.across(Along::X, band.range.max)?);
+        Some(rectangle(from, far, band.color, None))
     };
     placed.panel.marks.iter().filter_map(band).collect()
 }

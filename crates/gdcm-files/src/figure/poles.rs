@@ -1,20 +1,18 @@
-//! Poles of every model of one condition in the s-plane.
+//! Poles of every model of one condition in the s-plane, and what couplings do: to the loop they make, and to the poles (M16.4).
 
-use gdcm_core::couplings::PoleShift;
-use gdcm_core::dataset::{BundleKind, ModelId, Pair};
+use gdcm_core::couplings::{LoopMargin, PoleShift};
+use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_core::response::finite_zeros;
-use gdcm_core::study::ConditionModes;
+use gdcm_core::study::{ConditionModes, CouplingsAssessment};
 use nalgebra::Complex;
 
-use super::axis::{Axis, Range};
+use super::axis::{Axis, FrequencyUnit, Range, step_above};
 use super::bode::BodeOptions;
 use super::condition_source::{ConditionSource, SourceModel};
-use super::couplings::pole_shift_marks;
-use super::drawing::{Color, Stroke};
-use super::figure::{Figure, Panel, Plot};
-use super::mark::{Dot, DotShape, Dots, Guide, Mark, MarkId, Rule};
+use super::drawing::{Color, Dash, Hue, Stroke};
+use super::figure::{Band, Curve, Dot, DotShape, Dots, Figure, Guide, Mark, MarkId, Panel, Plot, Rule};
+use super::requirements::{arrow, spanned};
 use super::role::Role;
-use super::ticks::step_above;
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
 const SLOW: [Range; 2] = [Range { min: -1.2, max: 0.5 }, Range { min: -2.2, max: 2.2 }];
@@ -23,7 +21,7 @@ const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
 const FAR: f64 = 1e3;
 /// Points of an arc of equal frequency.
 const ARC_POINTS: usize = 60;
-const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
+const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 
 /// The zeros of a model for the response whose zeros are shown.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
@@ -50,7 +48,7 @@ pub fn poles_figure(
     let plot = |title: &str, [real, imaginary]: [Range; 2]| {
         let x = Axis::linear("Re λ [rad/s]").showing(Some(real));
         let y = Axis::linear("Im λ [rad/s]").showing(Some(imaginary));
-        let panel = Panel::new(x, y).with_all(rays()).with(Rule::vertical(0.0, ZERO)).with_all(dots.clone());
+        let panel = Panel::new(x, y).with_all(rays()).with(Rule::vertical(0.0, AXIS)).with_all(dots.clone());
         let panel = panel.with_all(zeros.clone()).with_all(moved.clone());
         Plot::new(title).panel(panel)
     };
@@ -77,12 +75,12 @@ fn poles(shown: &[SourceModel], modes: &ConditionModes) -> Vec<Dots> {
         let color = model.role.stroke(model.rejected).color;
         let found = modes.bundle(model.id.bundle)[model.index].as_deref().unwrap_or_default();
         let dots = Dots::new(&model.id.name, shape, color).key(model.role.key(model.rejected));
-        Dots { dots: found.iter().map(|mode| dot(model, mode.pole)).collect(), ..dots }
+        Dots { dots: found.iter().map(|mode| pole_dot(model, mode.pole)).collect(), ..dots }
     };
     shown.iter().map(group).collect()
 }
 
-fn dot(model: &SourceModel, value: Complex<f64>) -> Dot {
+fn pole_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
     Dot { x: value.re, y: value.im, label: String::new(), id: Some(MarkId::Model(model.id.clone())) }
 }
 
@@ -99,7 +97,7 @@ fn zeros(source: &ConditionSource<'_>, shown: &[SourceModel], (pair, zeros_of): 
         let key = format!("zeros of {}, {}", source.dataset().pair_name(pair), model.role.key(model.rejected));
         let color = model.role.stroke(model.rejected).color;
         let dots = Dots::new(&model.id.name, DotShape::Circle, color).key(key).filled(false);
-        Dots { dots: zeros_of(&model.id).into_iter().map(|zero| dot(model, zero)).collect(), ..dots }
+        Dots { dots: zeros_of(&model.id).into_iter().map(|zero| pole_dot(model, zero)).collect(), ..dots }
     };
     shown.iter().filter(|model| has_zeros(model.role)).map(group).collect()
 }
@@ -142,4 +140,71 @@ fn rays() -> Vec<Mark> {
         Guide { points: vec![[0.0, 0.0], far], label: String::new() }.into()
     };
     DAMPING_RATIOS.into_iter().flat_map(|ratio| [ray(ratio, 1.0), ray(ratio, -1.0)]).collect()
+}
+
+const OTHERS: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(60), 0.7);
+const SHOWN: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.6);
+const WAY: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
+const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
+
+/// The least singular value of `I - K H` over frequency, of every condition, `shown` on top; and the poles of that condition's physics
+/// representative without couplings and with them. Without a condition the one that is nearest to ringing.
+pub fn couplings_figure(
+    assessment: &CouplingsAssessment,
+    shown: Option<ConditionId>,
+    unit: FrequencyUnit,
+) -> Option<Figure> {
+    let least = |id: &ConditionId| assessment.conditions[id].margin.map_or(f64::INFINITY, |margin| margin.least);
+    let nearest = || assessment.conditions.keys().min_by(|a, b| least(a).total_cmp(&least(b))).copied();
+    let shown = shown.filter(|id| assessment.conditions.contains_key(id)).or_else(nearest)?;
+    let title = format!("Couplings: {}", assessment.couplings.name());
+    let figure = Figure::new(title).caption(assessment.heading()).columns(2).aspect(0.72);
+    Some(figure.plot(loop_plot(assessment, shown, unit)).plot(pole_plot(assessment, shown)))
+}
+
+/// How near the loop is to ringing.
+fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
+    let omega: Vec<f64> = assessment.omega.iter().map(|omega| unit.of_omega(*omega)).collect();
+    let curve = |id: ConditionId, stroke: Stroke, key: String| {
+        Curve::new(format!("condition {id}"), stroke, omega.clone(), assessment.conditions[&id].singular_values.clone())
+            .key(key)
+    };
+    let others = assessment.conditions.keys().filter(|id| **id != shown);
+    let others = others.map(|id| curve(*id, OTHERS, "other conditions".to_owned()));
+    let band = Range::new(unit.of_omega(assessment.band.min()), unit.of_omega(assessment.band.max()));
+    let ground = Band { range: band, color: Color::of(Hue::Accent).tint(12), key: "band".to_owned() };
+    let ringing = Rule::horizontal(LoopMargin::CAUTION, RINGING).label("close to ringing");
+    let y = Axis::linear("least singular value of I − K H").including(0.0).including(1.0);
+    let panel = Panel::new(Axis::logarithmic(unit.axis_label()), y).over(ground).with(ringing).with_all(others);
+    Plot::new("Loop at the sticks").panel(panel.with(curve(shown, SHOWN, format!("condition {shown}"))))
+}
+
+/// Where the poles go.
+fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
+    let (x, y) = (Axis::linear("Re λ [rad/s]"), Axis::linear("Im λ [rad/s]"));
+    let within = 1.5 * assessment.band.max();
+    let poles = assessment.conditions[&shown].poles.iter().flatten();
+    let near: Vec<PoleShift> = poles.filter(|shift| shift.after.norm() <= within).copied().collect();
+    let panel = Panel::new(x.including(0.0), y).with(Rule::vertical(0.0, AXIS)).with_all(pole_shift_marks(&near));
+    Plot::new(format!("Poles of condition {shown}")).panel(panel)
+}
+
+/// Poles without couplings, those with them, and an arrow from each to where it goes.
+pub fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
+    let place = |pole: Complex<f64>| [pole.re, pole.im];
+    let moved: Vec<[[f64; 2]; 2]> =
+        shifts.iter().filter_map(|shift| Some([place(shift.before?), place(shift.after)])).collect();
+    let spanned = spanned(moved.iter().flatten().copied());
+    let ways = moved.into_iter().map(|[from, to]| Mark::from(Curve::through("moved", WAY, arrow(from, to, spanned))));
+    let dots = |name: &str, shape: DotShape, role: Role, poles: Vec<Complex<f64>>| {
+        let empty = Dots::new(name, shape, role.stroke(false).color).key(name).filled(false);
+        Mark::from(poles.into_iter().fold(empty, |dots, pole| dots.dot(pole.re, pole.im, "")))
+    };
+    let before = shifts.iter().filter_map(|shift| shift.before).collect();
+    let after = shifts.iter().map(|shift| shift.after).collect();
+    ways.chain([
+        dots("without couplings", DotShape::Cross, Role::Representative, before),
+        dots("with couplings", DotShape::Circle, Role::Corrected, after),
+    ])
+    .collect()
 }

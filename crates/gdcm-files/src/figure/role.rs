@@ -5,7 +5,7 @@ use gdcm_core::study::RequirementRole;
 use serde::{Deserialize, Serialize};
 
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::mark::{DotShape, Mark};
+use super::figure::{DotShape, Mark};
 
 /// What a curve stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -206,7 +206,7 @@ fn entry(mark: &Mark) -> Option<Entry> {
         Mark::Envelope(of) => (of.name.clone(), of.edge.map_or(Sample::Ground(of.color), Sample::Line)),
         Mark::Intervals(of) => (of.name.clone(), Sample::Line(of.stroke)),
         Mark::Brackets(of) => (of.name.clone(), Sample::Line(of.stroke)),
-        Mark::Band(band) => (band.key.clone()?, Sample::Ground(band.color)),
+        Mark::Band(band) => (band.key.clone(), Sample::Ground(band.color)),
         Mark::Rule(_) | Mark::Guide(_) | Mark::Note(_) => return None,
     };
     Some(Entry { text, sample })
@@ -223,6 +223,7 @@ fn place(text: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Curve;
 
     #[test]
     fn roles_differ_without_their_colours() {
@@ -241,12 +242,6 @@ mod tests {
         assert_eq!(Role::Nominal.key(true), "nominal (rejected)");
         assert_eq!(Role::Perturbed.key(true), "rejected");
     }
-}
-
-#[cfg(test)]
-mod tests2 {
-    use super::super::role::*;
-    use crate::figure::mark::Curve;
 
     fn curve(role: Role, rejected: bool) -> Mark {
         Curve::new("", role.stroke(rejected), [0.0], [0.0]).key(role.key(rejected)).into()

@@ -6,8 +6,7 @@ use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
 
 use super::axis::Axis;
-use super::figure::{Figure, Panel};
-use super::mark::{Along, Bracket, Curve, Envelope, Intervals, Mark, Spans};
+use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
 
 impl Figure {
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
@@ -161,8 +160,8 @@ fn figure(value: f64) -> String {
 mod tests {
     use super::super::drawing::{Color, Stroke};
     use super::super::figure::Plot;
-    use super::super::tables::*;
-    use crate::figure::mark::{Bars, Curve, DotShape, Dots};
+    use super::*;
+    use crate::figure::{Bars, Curve, DotShape, Dots};
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
 

@@ -1,18 +1,20 @@
-//! What the scheduled correction is worth, and how sure the results are (M13).
+//! What the scheduled correction is worth, how sure the results are (M13), and what the couplings of the physics models mean, are worth and
+//! cost (M16).
 
 use std::sync::Arc;
 
 use gdcm_core::dataset::{Pair, PairTable};
 use gdcm_core::study::{
-    Analysis, AssessedCondition, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Cancelled,
-    Engine, Progress, Table, bar_table, difference_table, held_out_verdict, scatter_table, second_variable_table,
+    Analysis, AssessedCondition, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table,
+    difference_table, held_out_verdict, scatter_table, second_variable_table,
 };
 use gdcm_core::units::signed;
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
-use super::study::average_word;
-use crate::figure::{assessment_figure, decimals, evidence_figure};
+use crate::figure::{
+    FrequencyUnit, assessment_figure, average_word, couplings_figure, decimals, evidence_figure, usual_choice,
+};
 
 /// The analysis with how sure its figures are.
 ///
@@ -62,13 +64,7 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
 /// Responses in one figure, in four rows.
 const IN_A_FIGURE: usize = 12;
 /// Conditions side by side in a table that fits a sheet.
-const COLUMNS: usize = 12;
-
-/// What the paper assesses: the nominal model under the schedule, with the average of the settings.
-pub(super) fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
-    let average = analysis.study.settings.cost_average;
-    AssessmentChoice { model: AssessedModel::Nominal, correction: AssessedCorrection::Scheduled, average }
-}
+const CONDITIONS: usize = 12;
 
 /// Adds the section on the assessment.
 pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
@@ -128,7 +124,7 @@ fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pai
         let cells = shown.iter().map(|assessed| change(assessed).unwrap_or("–".to_owned()));
         table.row(std::iter::once(analysis.study.dataset.pair_name(pair)).chain(cells));
     }
-    page.wide_table(&table, COLUMNS);
+    page.wide_table(&table, CONDITIONS);
     let more = found.conditions.len() - shown.len();
     if more > 0 {
         page.paragraph(&format!(
@@ -163,4 +159,48 @@ fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> 
         }
     }
     table
+}
+
+/// Columns of a matrix that fit a sheet.
+const MATRIX_COLUMNS: usize = 8;
+
+/// The analysis with what its couplings are worth, where it has any.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` says so.
+pub(super) fn with_couplings(
+    analysis: Analysis,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<Analysis, Cancelled> {
+    if analysis.coupling_assessment.is_some() || analysis.fitted_couplings().is_none() {
+        return Ok(analysis);
+    }
+    let study = &analysis.study;
+    let assessed = engine.assess_couplings(study, study.settings.couplings, &Unobtrusive(progress))?;
+    Ok(Analysis { coupling_assessment: assessed.and_then(Result::ok), ..analysis })
+}
+
+/// Adds the section, where couplings are asked for.
+pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
+    if analysis.couplings.is_none() {
+        return;
+    }
+    page.section("Couplings");
+    page.paragraph(
+        "One mixing of the inputs and, where asked for, one feedback of outputs to inputs, the same for all conditions, stand before the \
+         corrections of the channels: what representatives, G, D, gains, delays, leads and J of this report are found on is the physics \
+         model with them. Which model represents its bundle, and which is suspected, is decided without them.",
+    );
+    page.list(analysis.coupling_remarks().into_iter().map(|remark| remark.text));
+    let Some(assessment) = &analysis.coupling_assessment else { return };
+    page.paragraph(&format!("{}.", capital(&assessment.heading())));
+    page.table(&assessment.cost_table());
+    assessment.matrix_tables(&analysis.study.dataset).iter().for_each(|table| page.wide_table(table, MATRIX_COLUMNS));
+    page.table(&assessment.pole_table());
+    if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
+        let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \
+                       to ringing. Poles of the condition that is nearest to it.";
+        page.figure(&figure, &figure.title, caption);
+    }
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_core::correction::Outcome;
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, ModelId, Pair};
+use gdcm_core::correction::{Channel, Outcome};
+use gdcm_core::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::study::{
     Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress, RemarkKind, Study, Table,
@@ -14,8 +14,8 @@ use gdcm_core::units::{number, s_to_ms, signed};
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 use crate::figure::{
-    BodeOptions, ConditionSource, Figure, Mark, Role, bode_figure, compact, decimals, error_figure, overview_figure,
-    poles_figure,
+    BodeOptions, ConditionSource, Figure, Mark, Role, all_channels, bode_figure, class_names, compact, condition_words,
+    decimals, error_figure, overview_figure, poles_figure,
 };
 
 /// Adds the section on the conditions: representatives, gains and delays, what they rest on, and plots of each.
@@ -36,7 +36,7 @@ pub(super) fn add(
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        page.subsection(&title(condition.flight_state()));
+        page.subsection(&condition_words(condition.flight_state()));
         match analysis.conditions.get(&condition.id()) {
             Some(Ok(result)) => {
                 add_result(page, analysis, result);
@@ -52,14 +52,6 @@ pub(super) fn add(
     Ok(())
 }
 
-fn title(state: &FlightState) -> String {
-    if state.name.is_empty() {
-        format!("Condition {}", state.id)
-    } else {
-        format!("Condition {}: {}", state.id, state.name)
-    }
-}
-
 fn draw(
     page: &mut Page,
     analysis: &Analysis,
@@ -71,11 +63,8 @@ fn draw(
     let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();
-        add_plots(
-            page,
-            result,
-            &ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None },
-        );
+        let source = ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None };
+        add_plots(page, result, &source);
     }
     Ok(())
 }
@@ -111,6 +100,8 @@ pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
 fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, String)> {
     let bounds = result.gain_bounds();
     let (gains, delays) = (&result.gains, &result.delays);
+    let least_ms = compact(s_to_ms(result.delay_bounds_s()[0]));
+    let most_ms = decimals(s_to_ms(result.delay_upper_s()), 2);
     let bound = gains.proof.lower_bound;
     let at_least = if bound.is_finite() { format!(", lower bound {}", compact(bound)) } else { String::new() };
     let scheduled = if analysis.study.choice(result.condition.id()).scheduled { "yes" } else { "no" };
@@ -119,14 +110,7 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
         ("Physics models", representative(analysis, result, BundleKind::Physics)),
         ("Identified models", representative(analysis, result, BundleKind::Identified)),
         ("Bounds of the gains", format!("{} to {}", decimals(bounds.lower, 4), decimals(bounds.upper, 4))),
-        (
-            "Bounds of the delays",
-            format!(
-                "{} to {} ms",
-                compact(s_to_ms(result.delay_bounds_s()[0])),
-                decimals(s_to_ms(result.delay_upper_s()), 2)
-            ),
-        ),
+        ("Bounds of the delays", format!("{least_ms} to {most_ms} ms")),
         ("Objective of the gains", format!("{}{at_least}; {}", compact(gains.objective), proof_word(result))),
         ("Objective of the delays", format!("{} s²; global optimum (convex)", compact(delays.objective))),
         ("In the schedule", scheduled.to_owned()),
@@ -137,9 +121,7 @@ fn flight_words(condition: &Condition) -> String {
     let state = condition.flight_state();
     let altitude = state.altitude_ft.map(|altitude| format!("{} ft", number(altitude)));
     let mass = state.mass_kg.map(|mass| format!("{} kg", number(mass)));
-    let classes = [(&state.altitude, "altitude"), (&state.weight, "weight")];
-    let classes = classes.map(|(class, of)| class.as_ref().map(|class| format!("{class} {of}")));
-    let [altitude_class, weight_class] = classes;
+    let [altitude_class, weight_class] = class_names(state);
     let parts = [Some(format!("{} kt", number(state.airspeed_kt))), altitude_class, altitude, weight_class, mass];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
@@ -157,16 +139,12 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
     let title = format!("Condition {}: gain and delay of each channel", result.condition.id());
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
-    let delays_s = correction.signed_delays_s();
-    let sides = [
-        ("input", dataset.inputs(), &correction.input_gains, delays_s.inputs),
-        ("output", dataset.outputs(), &correction.output_gains, delays_s.outputs),
-    ];
-    for (side, channels, gains, delays_s) in sides {
-        for ((channel, gain), delay_s) in channels.iter().zip(gains).zip(delays_s) {
-            let (gain, delay) = (decimals(*gain, 4), decimals(s_to_ms(delay_s), 2));
-            table.row([channel.name.clone(), side.to_owned(), gain, delay]);
-        }
+    let (inputs, outputs) = dataset.names_of_channels();
+    for channel in all_channels(dataset) {
+        let side = if matches!(channel, Channel::Input(_)) { "input" } else { "output" };
+        let (gain, delay_s) = (correction.gain(channel), correction.delay_s(channel));
+        let name = channel.name(&inputs, &outputs);
+        table.row([name, side.to_owned(), decimals(gain, 4), decimals(s_to_ms(delay_s), 2)]);
     }
     table
 }

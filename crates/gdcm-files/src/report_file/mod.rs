@@ -2,7 +2,6 @@
 
 mod assessment;
 mod conditions;
-mod couplings;
 mod page;
 mod requirements;
 mod schedule;
@@ -68,13 +67,13 @@ pub fn report(
     progress: &dyn Progress,
 ) -> Result<String, Cancelled> {
     let with_bars = assessment::with_bars(subject.analysis, engine, progress)?;
-    let analysis = &couplings::with_couplings(with_bars, engine, progress)?;
+    let analysis = &assessment::with_couplings(with_bars, engine, progress)?;
     let mut page = Page::default();
     study::add_summary(&mut page, analysis);
     study::add_settings(&mut page, &analysis.study);
     study::add_files(&mut page, &analysis.study, source);
     study::add_left_out(&mut page, analysis);
-    couplings::add_couplings(&mut page, analysis);
+    assessment::add_couplings(&mut page, analysis);
     conditions::add(&mut page, analysis, engine, progress)?;
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);

@@ -63,11 +63,8 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) = requirements.bandwidth.iter().partition(is_known);
     if !known.is_empty() {
         let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
-        page.figure(
-            &figure,
-            &figure.title,
-            "Phase delay over bandwidth; arrows lead from physics to corrected models.",
-        );
+        let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
+        page.figure(&figure, &figure.title, caption);
     }
     let known = Requirements { bandwidth: known.into_iter().cloned().collect(), ..requirements.clone() };
     page.table(&known.bandwidth_table(dataset));

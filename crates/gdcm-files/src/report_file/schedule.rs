@@ -2,7 +2,7 @@
 
 use gdcm_core::correction::{Channel, ChannelCorrection};
 use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::schedule::{Schedule, ScheduleSettings, ScheduledQuantity};
+use gdcm_core::schedule::{Schedule, ScheduledQuantity};
 use gdcm_core::study::{Analysis, Study, Table};
 use gdcm_core::units::{number, s_to_ms};
 
@@ -24,24 +24,11 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.subsection("Channels over the conditions");
     let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
     let (inputs, outputs): (Vec<_>, Vec<_>) = all_channels(&analysis.study.dataset).into_iter().partition(is_input);
-    let conditions = Across::Conditions;
-    for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
-        add_channels(
-            page,
-            analysis,
-            channels,
-            (Measure::Gain, conditions),
-            &format!("Gains of the {of} over conditions"),
-        );
-    }
-    for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
-        add_channels(
-            page,
-            analysis,
-            channels,
-            (Measure::Delay, conditions),
-            &format!("Delays of the {of} over conditions"),
-        );
+    for (measure, what) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
+        for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
+            let title = format!("{what} of the {of} over conditions");
+            add_channels(page, analysis, channels, (measure, Across::Conditions), &title);
+        }
     }
     page.subsection("Schedule over airspeed");
     match &analysis.schedule {
@@ -59,11 +46,8 @@ fn add_channels(
 ) {
     for channels in channels.chunks(IN_A_FIGURE) {
         let figure = channels_figure(analysis, analysis.uncertainty.as_deref(), channels, (measure, across));
-        page.figure(
-            &figure,
-            title,
-            "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.",
-        );
+        let caption = "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.";
+        page.figure(&figure, title, caption);
     }
 }
 
@@ -72,7 +56,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     let (low, high) = (number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
     let left_out = not_scheduled(analysis);
     page.facts([
-        ("Form", schedule_words(&ScheduleSettings { ..schedule.settings })),
+        ("Form", schedule_words(&schedule.settings)),
         ("Degree used", schedule.degree().map_or("–".to_owned(), |degree| degree.to_string())),
         ("Airspeeds", format!("{low} to {high} kt; outside, the end value holds")),
         ("Conditions left out of it", if left_out.is_empty() { "none".to_owned() } else { names(&left_out) }),
@@ -133,43 +117,35 @@ fn add_coefficients(page: &mut Page, schedule: &Schedule, (inputs, outputs): (&[
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
-    let airspeeds_kt = schedule.airspeeds.clusters_kt();
-    let channels = all_channels(dataset).into_iter().map(|channel| {
-        let gain = move |correction: &ChannelCorrection| decimals(correction.gain(channel), 4);
-        (format!("k_{}", channel.name(&inputs, &outputs)), Box::new(gain) as Cell)
+    let (channels, pairs) = (all_channels(dataset), shown_pairs(&analysis.study));
+    let named = |symbol: &str| -> Vec<String> {
+        channels.iter().map(|channel| format!("{symbol}_{}", channel.name(&inputs, &outputs))).collect()
+    };
+    add_over_airspeed(page, schedule, "Scheduled gains of the channels", &named("k"), |correction| {
+        channels.iter().map(|channel| decimals(correction.gain(*channel), 4)).collect()
     });
-    add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled gains of the channels", channels.collect());
-    let net = shown_pairs(&analysis.study).into_iter().map(|pair| {
-        let gain = move |correction: &ChannelCorrection| decimals(correction.net_gain(pair), 4);
-        (dataset.pair_name(pair), Box::new(gain) as Cell)
+    let names: Vec<String> = pairs.iter().map(|pair| dataset.pair_name(*pair)).collect();
+    add_over_airspeed(page, schedule, "Scheduled net gains", &names, |correction| {
+        pairs.iter().map(|pair| decimals(correction.net_gain(*pair), 4)).collect()
     });
-    add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled net gains", net.collect());
     if schedule.has_delays() {
-        let delays = all_channels(dataset).into_iter().map(|channel| {
-            let delay = move |correction: &ChannelCorrection| decimals(s_to_ms(correction.delay_s(channel)), 2);
-            (format!("τ_{}", channel.name(&inputs, &outputs)), Box::new(delay) as Cell)
+        add_over_airspeed(page, schedule, "Scheduled delays of the channels [ms]", &named("τ"), |correction| {
+            channels.iter().map(|channel| decimals(s_to_ms(correction.delay_s(*channel)), 2)).collect()
         });
-        add_over_airspeed(page, schedule, &airspeeds_kt, "Scheduled delays of the channels [ms]", delays.collect());
     }
 }
-
-/// A cell of a correction.
-type Cell = Box<dyn Fn(&ChannelCorrection) -> String>;
 
 /// Tables with a row for each airspeed, as many as it takes for all columns to fit.
 fn add_over_airspeed(
     page: &mut Page,
     schedule: &Schedule,
-    airspeeds_kt: &[f64],
     title: &str,
-    columns: Vec<(String, Cell)>,
+    names: &[String],
+    cells: impl Fn(&ChannelCorrection) -> Vec<String>,
 ) {
-    let names = std::iter::once("V [kt]").chain(columns.iter().map(|(name, _)| name.as_str()));
-    let mut table = Table::new(title, names);
-    for airspeed_kt in airspeeds_kt {
-        let correction = schedule.at(*airspeed_kt);
-        let cells = columns.iter().map(|(_, cell)| cell(&correction));
-        table.row(std::iter::once(decimals(*airspeed_kt, 1)).chain(cells));
+    let mut table = Table::new(title, std::iter::once("V [kt]").chain(names.iter().map(String::as_str)));
+    for airspeed_kt in schedule.airspeeds.clusters_kt() {
+        table.row(std::iter::once(decimals(airspeed_kt, 1)).chain(cells(&schedule.at(airspeed_kt))));
     }
     page.wide_table(&table, COLUMNS);
 }

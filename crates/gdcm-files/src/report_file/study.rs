@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 
 use gdcm_core::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable, Provenance};
-use gdcm_core::fidelity::{CostAverage, SUGGESTION_RATIO};
+use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
 use gdcm_core::study::{Analysis, AssessmentTable, Caution, ConditionAnalysis, SETTINGS, Study, Table, setting};
 use gdcm_core::units::number;
 
-use super::assessment::{capital, usual_choice};
+use super::assessment::capital;
 use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
-use crate::figure::decimals;
+use crate::figure::{decimals, usual_choice};
 
 /// What came of the study, at a glance.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
@@ -51,10 +51,9 @@ pub fn assessment_sentence(analysis: &Analysis) -> String {
 }
 
 fn condition_table(analysis: &Analysis) -> Table {
-    let mut table = Table::new(
-        "The conditions: models kept of those there are, held responses matched of those held, and how sure the gains are",
-        ["condition", "name", "V [kt]", "physics", "identified", "gains", "delays", "optimum", "scheduled"],
-    );
+    let title = "The conditions: models kept of those there are, held responses matched of those held, and how sure the gains are";
+    let columns = ["condition", "name", "V [kt]", "physics", "identified", "gains", "delays", "optimum", "scheduled"];
+    let mut table = Table::new(title, columns);
     for condition in analysis.study.dataset.conditions() {
         let state = condition.flight_state();
         let result = analysis.condition(condition.id());
@@ -109,14 +108,6 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     });
     let words: Vec<(String, String)> = words.collect();
     page.facts(words.iter().map(|(name, words)| (name.as_str(), words.clone())));
-}
-
-/// `the median`, or `the mean`.
-pub(super) fn average_word(average: CostAverage) -> &'static str {
-    match average {
-        CostAverage::Median => "the median",
-        CostAverage::Mean => "the mean",
-    }
 }
 
 /// The form of a schedule in words.

@@ -3,6 +3,7 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
+use crate::view::CurveCommand;
 use crate::view::palette::{self, Palette};
 
 pub(super) struct Model {
@@ -28,7 +29,7 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
         .build_ui_state(
             |ui, model: &mut Model| {
                 let scene = BodeScene {
-                    hidden_roles: &model.hidden_roles,
+                    hidden_roles: Some(&model.hidden_roles),
                     ..BodeScene::of("LON → Q", &model.curves, model.band)
                 };
                 let palette = Palette::of(ui.visuals());
@@ -146,7 +147,7 @@ fn panning_one_plot_pans_the_frequencies_of_both() {
     let view = &harness.state().view;
     assert!(view.omega_range().0 < 0.9 * before);
     let left = |transform: Option<&egui_plot::PlotTransform>| transform.map(|transform| transform.bounds().min()[0]);
-    assert_eq!(left(view.magnitude_transform()), left(view.phase_transform()));
+    assert_eq!(left(view.transform(Pane::Magnitude)), left(view.transform(Pane::Phase)));
 }
 
 #[test]
@@ -335,8 +336,8 @@ fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
     let mut harness = harness(three_curves());
     let chip = harness.get_by_label("Show nominal").rect().center();
     for (modifiers, event) in [
-        (Modifiers::ALT, BodeEvent::RoleAlone(Role::Nominal)),
-        (Modifiers::SHIFT, BodeEvent::RoleRaised(Role::Nominal)),
+        (Modifiers::ALT, BodeEvent::Display(CurveCommand::ShowRoleAlone(Role::Nominal))),
+        (Modifiers::SHIFT, BodeEvent::Display(CurveCommand::RaiseRole(Role::Nominal))),
     ] {
         harness.event(Event::ModifiersChanged(modifiers));
         press(&mut harness, chip, PointerButton::Primary, modifiers);
@@ -352,7 +353,7 @@ fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_no
     let mut harness = harness(three_curves());
     harness.get_by_label("Show perturbed").click();
     harness.run();
-    assert_eq!(harness.state().events, [BodeEvent::RoleToggled(Role::Perturbed)]);
+    assert_eq!(harness.state().events, [BodeEvent::Display(CurveCommand::ToggleRole(Role::Perturbed))]);
     let at = point_on(&harness, 1, 60);
     harness.state_mut().hidden_roles.insert(Role::Perturbed);
     harness.state_mut().curves[1].hidden = true;
@@ -400,7 +401,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     harness.get_by_label("Mark frequency").click();
     harness.run();
     let marked = harness.state().events.iter().find_map(|event| match event {
-        BodeEvent::CursorPinned(omega) => Some(*omega),
+        BodeEvent::Display(CurveCommand::PinCursor(omega)) => Some(*omega),
         _ => None,
     });
     assert!(marked.is_some_and(|marked| (marked / omega - 1.0).abs() < 1e-3), "{marked:?} {omega}");
@@ -422,7 +423,7 @@ fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a
     let at = point_on(&harness, 1, 60);
     harness.hover_at(at);
     harness.run();
-    assert_eq!(harness.state().view.hovered(), Some(&numbered(2)));
+    assert_eq!(harness.state().view.hovered.as_ref(), Some(&numbered(2)));
     assert_eq!(long_lines(&harness), 4, "and the curve meant");
     click(&mut harness, at);
     assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2))]);

@@ -50,17 +50,10 @@ fn harness(model: Model) -> Harness<'static, Model> {
     let mut harness = builder.with_context_setup(palette::apply).build_ui_state(
         |ui, model: &mut Model| {
             let scene = FigureScene {
-                name: "gains",
-                figure: &model.figure,
                 selected: Some(id(2)),
-                highlighted: None,
                 columns: &model.columns,
                 zooms: model.zooms,
-                is_compact: false,
-                accented: None,
-                least: vec2(122.0, 120.0),
-                message: "Nothing to draw",
-                words: (&Numbers, 0),
+                ..FigureScene::new("gains", &model.figure, vec2(122.0, 120.0), "Nothing to draw", &Numbers)
             };
             let palette = Palette::of(ui.visuals());
             model.events.extend(figure_ui(ui, &scene, &mut model.view, &palette));

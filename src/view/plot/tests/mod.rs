@@ -11,9 +11,19 @@ use std::sync::Arc;
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 
-use super::curve::numbered;
 use super::*;
-use gdcm_core::dataset::ConditionId;
+use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
+
+/// The curve of a physics model with this number for a name.
+pub(super) fn numbered(number: u64) -> CurveId {
+    CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string()))
+}
+
+/// A curve of three values, an octave apart, the same in both panes.
+pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
+    let curve = BodeCurve::new(numbered(id), Role::Perturbed);
+    curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
+}
 
 /// Presses and releases a button at `at`.
 fn press<State>(harness: &mut Harness<'_, State>, at: Pos2, button: PointerButton, modifiers: Modifiers) {

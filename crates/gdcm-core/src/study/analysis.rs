@@ -1,21 +1,9 @@
 //! The result of a whole study.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
-use crate::couplings::CouplingError;
-use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
-use crate::schedule::{
-    CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError, compare_forms, compare_lead_degrees,
-};
-use crate::uncertainty::Scalar;
+use crate::schedule::{FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees};
 
-use super::{
-    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, CouplingsAssessment, FittedCouplings,
-    LeadCompensated, LeadOffer, Remark, Study, Uncertainty, no_couplings, scheduled_points,
-};
+use super::*;
 
 /// The nominal model of a condition under the scheduled correction (M12).
 #[derive(Clone, Debug, PartialEq)]

@@ -1,16 +1,9 @@
 //! What a correction is worth, response by response and condition by condition, for the model and the correction that are asked
 //! for (M12, Figures 8 to 19).
 
-use std::sync::Arc;
+use crate::schedule::corrected_cost;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
-use crate::fidelity::CostAverage;
-use crate::response::GainDelay;
-use crate::schedule::{CostChange, ScheduleError, corrected_cost};
-use crate::units::{number, signed};
-
-use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings, in_turn};
+use super::*;
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,13 +1,12 @@
 //! Responses of every model of a condition, each kept by what it is computed from.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use crate::correction::ABOVE_BAND;
-use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
-use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
+use crate::dataset::ContentHash;
 
-use super::{Cancelled, ConditionAnalysis, Execution, FittedCouplings, Memo, PhaseCorrection, Settings};
+use super::*;
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);

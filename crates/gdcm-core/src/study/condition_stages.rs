@@ -1,22 +1,9 @@
 //! The stages of one condition, each kept while what it depends on stays the same.
 
-use std::sync::Arc;
+use crate::correction::{Bounds, DELAY_AGREEMENT_S, LeadDesign, delay_upper_s, gain_bounds, solve};
+use crate::schedule::assess;
 
-use crate::correction::{
-    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Delta, GainSource, LeadDesign, Problem, ProblemError,
-    ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
-};
-use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
-use crate::fidelity::CostAverage;
-use crate::response::FrequencyGrid;
-use crate::schedule::{CostChange, assess};
-
-use super::{
-    BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionSubstitutions, CoupledCondition, CoupledResponses, CouplingSource,
-    DelayFrom, Execution, FittedCouplings, GridKey, LeadCompensated, LeadOffer, Memo, Mismatches, PhaseCorrection,
-    Purpose, Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
-};
+use super::*;
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);

@@ -2,13 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::correction::{Channel, delta_gains};
-use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
-use crate::fidelity::Mismatch;
-use crate::response::{FrequencyGrid, median};
-use crate::units::number;
-
-use super::{Cancelled, Compared, ConditionResponses, Execution, Mismatches, Study};
+use super::*;
 
 /// Within this \[rad\] of half a turn a phase difference speaks for another sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;

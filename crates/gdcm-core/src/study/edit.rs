@@ -1,12 +1,8 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
-use std::sync::Arc;
+use crate::dataset::BandError;
 
-use crate::correction::Channel;
-use crate::dataset::{BandError, BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
-use crate::units::number;
-
-use super::{AdoptedModels, ConditionChoice, RequirementSettings, Setting, SignRole, Study, Value};
+use super::*;
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]

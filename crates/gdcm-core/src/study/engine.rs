@@ -1,21 +1,10 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
-use crate::dataset::{Band, Condition, ConditionId, Dataset};
-use crate::executor::{Executor, Sequential};
-use crate::response::FrequencyGrid;
-use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
+use crate::schedule::{ScheduleCaution, ScheduledPoint};
 
-use super::{
-    Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionStages, ConventionDoubt, CouplingFitKey, CouplingOutcome, CouplingSource, Execution,
-    FittedCouplings, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed, convention_doubts,
-    model_count,
-};
+use super::*;
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.

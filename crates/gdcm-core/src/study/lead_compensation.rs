@@ -1,18 +1,11 @@
 //! What lead filters leave of the difference between two representatives (M15.5).
 
-use std::sync::Arc;
-
-use crate::correction::{
-    Bounds, Channel, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, LeadPrice, Problem, Quantity, delta_gains,
-};
-use crate::dataset::{Pair, PairTable};
-use crate::fidelity::{Cost, CostAverage, Mismatch};
+use crate::correction::{Bounds, DELAY_AGREEMENT_S, LeadPrice};
 use crate::response::LeadFilter;
-use crate::schedule::{CostChange, corrected_cost};
-use crate::uncertainty::Scalar;
-use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
+use crate::schedule::corrected_cost;
+use crate::units::ratio_to_db;
 
-use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Repeated, Study, Uncertainty, miss_words};
+use super::*;
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]

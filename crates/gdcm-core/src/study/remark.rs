@@ -1,11 +1,9 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Channel, Sensitivity, Solution, kkt_residual, sensitivities};
-use crate::dataset::Pair;
-use crate::schedule::Schedule;
-use crate::units::{number, s_to_ms, telling, told_apart};
+use crate::correction::{Sensitivity, kkt_residual, sensitivities};
+use crate::units::told_apart;
 
-use super::{Caution, ConditionAnalysis, PhaseCorrection, SignRole, Study, lead_remarks};
+use super::*;
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

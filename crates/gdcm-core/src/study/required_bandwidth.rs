@@ -7,21 +7,16 @@
 //! ```
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
-use serde::Serialize;
-
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
-use crate::dataset::{self, Band, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
+use crate::dataset::{self, ModelBands};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
     Metric, NoMetric, PairBand, PhaseLine, ResponseAt, ResponseDeviation, SampledModel, search_frequencies,
     substitution_bar,
 };
-use crate::response::GainDelay;
-use crate::uncertainty::{Figures, Scalar, student_quantile};
+use crate::uncertainty::{Figures, student_quantile};
 
-use super::{AskedCondition, RequirementRole};
+use super::*;
 
 /// Bandwidth and phase delay of one response of one model of a condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]

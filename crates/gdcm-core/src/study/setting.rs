@@ -1,16 +1,11 @@
 //! The one table of settings: what each is called, where it stands in files and on a command line, what it may be, and how the
 //! window shows it. Undo, comparisons of decisions, refusals, the report, the command line and the window read it.
 
-use crate::correction::{GainBounds, GainObjective, GainSource};
-use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use crate::fidelity::CostAverage;
+use crate::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use crate::response::LeadOrder;
-use crate::schedule::{ScheduleKind, ScheduledQuantity, SecondVariable};
+use crate::schedule::ScheduleKind;
 
-use super::{
-    Choice, Control, CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, Digits, Kind, PhaseCorrection, Place, Setting,
-    Settings, Study, Unit,
-};
+use super::*;
 
 const PURE: Unit = Unit { file: "", shown: "", scale: 1.0 };
 const PERCENT: Unit = Unit { file: "", shown: "%", scale: 100.0 };

@@ -1,20 +1,12 @@
 //! Other models of the bundles in place of the representatives, one at a time (M13.1).
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use crate::correction::{ChannelCorrection, Delta, GainSource};
-use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
-use crate::response::{FrequencyGrid, coherence_at, median, quantile};
+use crate::response::{coherence_at, quantile};
 use crate::uncertainty::{
-    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, Scalar,
-    ScalarTable, VarianceComponent,
+    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, ScalarTable,
+    VarianceComponent,
 };
 
-use super::{
-    Analysis, Cancelled, Compared, ConditionAnalysis, ConditionResponses, Execution, FittedCouplings, Mismatches,
-    Settings, Study,
-};
+use super::*;
 
 /// What came of the substitutions of one condition.
 #[derive(Clone, Debug, PartialEq)]

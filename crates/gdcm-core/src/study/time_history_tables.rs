@@ -1,11 +1,6 @@
 //! Time histories within tolerances, as tables (M17.2).
 
-use std::collections::BTreeSet;
-
-use crate::dataset::ConditionId;
-use crate::units::telling;
-
-use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFinding, Trend};
+use super::*;
 
 /// Samples inside, and all of them.
 type Counted = (f64, f64);

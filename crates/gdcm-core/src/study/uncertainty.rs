@@ -1,18 +1,14 @@
 //! How sure the figures of an analysis are, what their scatter over the conditions is made of, and what follows for the schedule
 //! (M13).
 
-use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::Arc;
-
-use crate::dataset::{Condition, ConditionId, Dataset, FlightState, Pair, PairTable};
-use crate::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
+use crate::dataset::FlightState;
+use crate::schedule::airspeed_indicators;
 use crate::uncertainty::{
-    BandWidths, Bar, BarSource, Design, Difference, Scalar, ScalarTable, ScheduleBand, SecondVariableDesign,
+    BandWidths, Bar, BarSource, Design, Difference, ScalarTable, ScheduleBand, SecondVariableDesign,
     SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars, holm,
 };
 
-use super::{Analysis, ConditionAnalysis, ConditionSubstitutions, bar_source, left_in_band};
+use super::*;
 
 /// How sure the figures of an analysis are.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,9 @@
 //! How scores and discontinuity ratios were computed (M5).
 
-use crate::correction::{Channel, ChannelCorrection};
-use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Origin, Pair};
-use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT, SUGGESTION_RATIO};
-use crate::study::{AssessedModel, AssessmentChoice, assessed};
-use crate::units::{s_to_ms, signed};
+use crate::dataset::Origin;
+use crate::fidelity::{PHASE_WEIGHT, SUGGESTION_RATIO};
 
-use super::{Context, Derivation, average_word, counted_words, digits, median_words};
+use super::*;
 
 /// Terms of a sum that are written out.
 const MOST_TERMS: usize = 8;

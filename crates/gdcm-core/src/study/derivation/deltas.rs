@@ -1,14 +1,10 @@
 //! How G, D and the bounds were computed (M6, M7).
 
-use crate::correction::{Channel, GainSource};
-use crate::dataset::{BundleKind, ConditionId, Pair};
-use crate::fidelity::Mismatch;
-use crate::schedule::{Regression, Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionSubstitutions, reports_error, takes_reported_error};
-use crate::uncertainty::{Bar, Scalar, VarianceComponent};
-use crate::units::{db_to_ratio, number, s_to_ms};
+use crate::schedule::Regression;
+use crate::uncertainty::{Bar, VarianceComponent};
+use crate::units::db_to_ratio;
 
-use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
+use super::*;
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {

@@ -265,7 +265,7 @@ fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
 fn curves_job(state: &State) -> CurvesJob {
     let dataset = Arc::clone(&state.study.dataset);
     let grid = (curves_band(&state.study.settings), CURVE_POINTS);
-    CurvesJob { dataset, condition: state.condition().id(), grid }
+    CurvesJob { dataset: dataset.into(), condition: state.condition().id(), grid }
 }
 
 /// The costs of holding and freeing, of the condition shown.
@@ -292,5 +292,5 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
 /// The error bars of what is shown; while that is computed anew, the answer has all cores.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     state.analysis().filter(|_| !state.results.is_behind())?;
-    state.results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
+    state.results.analysis.clone().map(|analysis| UncertaintyJob { analysis: analysis.into() })
 }

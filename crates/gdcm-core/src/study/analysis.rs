@@ -46,6 +46,12 @@ impl Analysis {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
+    /// The same, or in words why there is none.
+    pub(super) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
+        let outcome = self.conditions.get(&id).ok_or("it was not analysed")?;
+        outcome.as_ref().map_err(ToString::to_string)
+    }
+
     /// The couplings that every physics model has gone through, where there are any.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
@@ -71,8 +77,11 @@ impl Analysis {
 
     /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
-        let all = self.study.dataset.conditions().iter().map(|condition| condition.id());
-        all.filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some()).collect()
+        self.study
+            .dataset
+            .ids()
+            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
+            .collect()
     }
 
     /// The schedule of the chosen conditions without one of them.
@@ -193,10 +202,7 @@ impl ConditionAnalysis {
 
     /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
-        match kind {
-            BundleKind::Physics => &self.comparison.physics,
-            BundleKind::Identified => &self.comparison.identified,
-        }
+        kind.pick(&self.comparison.physics, &self.comparison.identified)
     }
 
     /// Name of the representative of a bundle.

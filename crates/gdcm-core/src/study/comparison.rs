@@ -49,10 +49,7 @@ impl BundleMetrics {
 
     /// Distances of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleDistance {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

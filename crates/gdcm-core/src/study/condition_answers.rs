@@ -21,7 +21,7 @@ pub struct QuantityHistory {
 }
 
 /// One record against the tolerances.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistory {
     /// The condition.
     pub condition: ConditionId,
@@ -30,18 +30,11 @@ pub struct RecordHistory {
     /// Whether the identified models were kept from it.
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
-    pub flight: Arc<FlightRecord>,
+    pub flight: Shared<FlightRecord>,
     /// Each row of the table that can be applied.
     pub quantities: Vec<QuantityHistory>,
     /// In words what is not compared, and why.
     pub missing: Vec<String>,
-}
-
-impl PartialEq for RecordHistory {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.flight, &other.flight)
-            && (self.condition, &self.quantities, &self.missing) == (other.condition, &other.quantities, &other.missing)
-    }
 }
 
 impl RecordHistory {
@@ -84,10 +77,10 @@ impl RecordHistory {
 }
 
 /// A record of a condition against the tolerances of the study, beside the live answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// The condition.
     pub condition: ConditionId,
     /// The record.
@@ -98,20 +91,9 @@ pub struct RecordHistoryJob {
     pub tolerances: ToleranceTable,
 }
 
-impl PartialEq for RecordHistoryJob {
-    fn eq(&self, other: &Self) -> bool {
-        let key = |of: &Self| (of.condition, of.record.clone(), of.preparation.clone(), of.tolerances.clone());
-        Arc::ptr_eq(&self.analysis, &other.analysis) && key(self) == key(other)
-    }
-}
-
 impl RecordHistoryJob {
     fn found(&self, executor: &dyn Executor) -> Result<RecordHistory, String> {
-        let result = match self.analysis.conditions.get(&self.condition) {
-            Some(Ok(result)) => result,
-            Some(Err(failure)) => return Err(failure.to_string()),
-            None => return Err("it was not analysed".to_owned()),
-        };
+        let result = self.analysis.result(self.condition)?;
         let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..self.preparation.clone() };
         let segments = segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
         let (mut missing, mut models) = (Vec::new(), Vec::new());
@@ -148,7 +130,7 @@ impl RecordHistoryJob {
         };
         let quantities = comparer.rows.iter().map(quantity).collect();
         let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
-        let flight = Arc::clone(&self.record.flight);
+        let flight = self.record.flight.clone();
         Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })
     }
 }
@@ -193,11 +175,7 @@ impl TestAnswers {
     fn of(job: &TestAnswersJob, executor: &dyn Executor) -> Result<Self, String> {
         let TestAnswersJob { analysis, condition, input, test } = job;
         let (condition, input) = (*condition, *input);
-        let result = match analysis.conditions.get(&condition) {
-            Some(Ok(result)) => result,
-            Some(Err(failure)) => return Err(failure.to_string()),
-            None => return Err("it was not analysed".to_owned()),
-        };
+        let result = analysis.result(condition)?;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answer = |role: &RequirementRole| {
             let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
@@ -216,23 +194,16 @@ impl TestAnswers {
 }
 
 /// The answers of the models of a condition to the test input of the study, beside the live answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// The condition.
     pub condition: ConditionId,
     /// Index of the input that is moved.
     pub input: usize,
     /// How it is moved.
     pub test: TestInput,
-}
-
-impl PartialEq for TestAnswersJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis && (self.condition, self.input, self.test) == (other.condition, other.input, other.test)
-    }
 }
 
 impl Job for TestAnswersJob {
@@ -259,7 +230,7 @@ mod tests {
     fn answers(test: TestInput) -> TestAnswers {
         let analysis = EXAMPLE.analysis.clone();
         let condition = *analysis.conditions.keys().next().unwrap();
-        let job = TestAnswersJob { analysis: Arc::new(analysis), condition, input: 1, test };
+        let job = TestAnswersJob { analysis: Arc::new(analysis).into(), condition, input: 1, test };
         let executor: Box<dyn Executor> = Box::new(crate::executor::Sequential);
         TestAnswers::clone(&job.run(&mut { executor }, &Unobserved).unwrap().unwrap())
     }

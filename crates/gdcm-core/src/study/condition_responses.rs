@@ -79,10 +79,7 @@ impl ConditionResponses {
 
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 
@@ -267,10 +264,7 @@ impl ConditionCurves {
 
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

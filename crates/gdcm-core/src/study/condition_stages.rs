@@ -288,7 +288,7 @@ impl SolvedStages {
         let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
         let problem = LeadOffer::problem(&input.delta.band_delay_s, held, settings.fitted(), bounds);
         let Some(problem) = problem.filter(|_| settings.phase != PhaseCorrection::Lead) else { return Ok(None) };
-        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution);
+        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution.progress());
         // An offer that cannot be made is none.
         let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
         let leads = ChannelLeads::new(design, solution.channels());
@@ -304,7 +304,7 @@ impl SolvedStages {
         (proofs, execution): (ProofBudget, &Execution<'_>),
     ) -> Result<(Arc<Problem>, Solved), Cancelled> {
         let problem = Arc::new(input.delay_problem(design));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
         let delays = self.delays.get_or_fail(Arc::clone(&problem), solve)?;
         Ok((problem, delays))
     }
@@ -325,7 +325,7 @@ impl SolvedStages {
         };
         let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
             (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
@@ -409,10 +409,11 @@ impl<'a> SolveInput<'a> {
 }
 
 /// What came of one problem.
-type Solved = Result<Arc<Solution>, ProblemError>;
+pub(super) type Solved = Result<Arc<Solution>, ProblemError>;
 
-fn solved(problem: &Problem, proofs: ProofBudget, execution: &Execution<'_>) -> Result<Solved, Cancelled> {
-    match solve(problem, proofs, &|| execution.progress().cancelled()) {
+/// The optimum of a problem, proven within a budget.
+pub(super) fn solved(problem: &Problem, proofs: ProofBudget, progress: &dyn Progress) -> Result<Solved, Cancelled> {
+    match solve(problem, proofs, &|| progress.cancelled()) {
         Err(ProblemError::Stopped) => Err(Cancelled),
         solved => Ok(solved.map(Arc::new)),
     }

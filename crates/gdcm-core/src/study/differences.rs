@@ -378,10 +378,7 @@ impl ConditionInventory {
 
     /// The models of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

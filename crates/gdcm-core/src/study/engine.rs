@@ -121,8 +121,7 @@ impl Engine {
             uncertainty: None,
         };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
-        let ids: Vec<ConditionId> =
-            analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
+        let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
         let assess = |place: usize| match assessed(&analysis, ids[place], choice) {
             Ok(of) => Assessed::Nominal(of.changes),
             Err(why) => Assessed::LeftOut { why },
@@ -317,8 +316,8 @@ pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec
 
 /// The results of the conditions that are in the schedule, in file order.
 fn in_schedule<'a>(study: &Study, outcomes: &'a Outcomes) -> impl Iterator<Item = &'a ConditionAnalysis> {
-    let chosen = study.dataset.conditions().iter().map(|condition| condition.id());
-    chosen.filter(|id| study.choice(*id).is_in_schedule()).filter_map(|id| outcomes.get(&id)?.as_ref().ok())
+    let chosen = study.dataset.ids().filter(|id| study.choice(*id).is_in_schedule());
+    chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
 /// The channels of which no schedule can hold the signed delays of all conditions (M15.6).

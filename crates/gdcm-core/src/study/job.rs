@@ -1,15 +1,46 @@
 //! Long work that is done beside the live answer.
 
-use std::sync::{Mutex, PoisonError};
+use std::ops::Deref;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use crate::correction::{Toggle, solve, toggles};
+use crate::correction::{Toggle, toggles};
 use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::identification::{Identification, IdentificationError, Options, ValidationSettings, identify};
 use crate::records::LaidOutRecord;
 use crate::response::{Mode, ModesError, modes_of};
 
 use super::*;
+
+/// A value that several hold, equal to itself alone: two of them are compared without a look at their numbers.
+#[derive(Debug)]
+pub struct Shared<T: ?Sized>(Arc<T>);
+
+impl<T: ?Sized> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T: ?Sized> PartialEq for Shared<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl<T: ?Sized> From<Arc<T>> for Shared<T> {
+    fn from(value: Arc<T>) -> Self {
+        Self(value)
+    }
+}
+
+impl<T: ?Sized> Deref for Shared<T> {
+    type Target = Arc<T>;
+
+    fn deref(&self) -> &Arc<T> {
+        &self.0
+    }
+}
 
 /// One piece of long work with progress and cancellation, done beside the live answer.
 ///
@@ -44,10 +75,7 @@ impl Job for ProofJob {
     type Output = Result<Arc<Solution>, ProblemError>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        match solve(&self.problem, ProofBudget::default(), &|| progress.cancelled()) {
-            Err(ProblemError::Stopped) => Err(Cancelled),
-            solved => Ok(solved.map(Arc::new)),
-        }
+        solved(&self.problem, ProofBudget::default(), progress)
     }
 }
 
@@ -86,21 +114,14 @@ impl Job for TogglesJob {
 }
 
 /// The responses of every model of one condition, for drawing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     /// The models.
-    pub dataset: Arc<Dataset>,
+    pub dataset: Shared<Dataset>,
     /// The condition.
     pub condition: ConditionId,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
-}
-
-impl PartialEq for CurvesJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_dataset = Arc::ptr_eq(&self.dataset, &other.dataset);
-        same_dataset && self.condition == other.condition && self.grid == other.grid
-    }
 }
 
 impl Job for CurvesJob {
@@ -115,16 +136,10 @@ impl Job for CurvesJob {
 }
 
 /// The modes of every model of one condition.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     /// The condition.
-    pub condition: Arc<Condition>,
-}
-
-impl PartialEq for ModesJob {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.condition, &other.condition)
-    }
+    pub condition: Shared<Condition>,
 }
 
 impl Job for ModesJob {
@@ -137,10 +152,10 @@ impl Job for ModesJob {
 }
 
 /// The responses of some models, wherever in the dataset they are, on one grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     /// The dataset.
-    pub dataset: Arc<Dataset>,
+    pub dataset: Shared<Dataset>,
     /// The models; those that the dataset does not have are left out.
     pub models: Vec<ModelId>,
     /// The couplings of those models; none of models as they are.
@@ -164,14 +179,7 @@ impl AcrossJob {
         let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
         let couplings =
             analysis.filter(|_| role == AcrossRole::Corrected).and_then(Analysis::fitted_couplings).cloned();
-        Self { dataset: Arc::clone(dataset), models, couplings, grid }
-    }
-}
-
-impl PartialEq for AcrossJob {
-    fn eq(&self, other: &Self) -> bool {
-        let key = |of: &Self| (of.models.clone(), of.couplings.clone(), of.grid);
-        Arc::ptr_eq(&self.dataset, &other.dataset) && key(self) == key(other)
+        Self { dataset: Arc::clone(dataset).into(), models, couplings, grid }
     }
 }
 
@@ -281,10 +289,9 @@ impl PartialEq for VariantJob {
     /// The same dataset and the same decisions: the words that they are explained with do not count.
     fn eq(&self, other: &Self) -> bool {
         let (a, b) = (&self.study, &other.study);
-        let conditions = || a.dataset.conditions().iter().map(|condition| condition.id());
         Arc::ptr_eq(&a.dataset, &b.dataset)
             && a.settings == b.settings
-            && conditions().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
+            && a.dataset.ids().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
     }
 }
 
@@ -299,16 +306,10 @@ impl Job for VariantJob {
 }
 
 /// The bars of an analysis, and what follows from them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
-}
-
-impl PartialEq for UncertaintyJob {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.analysis, &other.analysis)
-    }
+    pub analysis: Shared<Analysis>,
 }
 
 impl Job for UncertaintyJob {
@@ -349,10 +350,7 @@ impl ConditionModes {
 
     /// The modes of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 
     /// Each mode of the model of index `reference` followed through its bundle. A model without modes leaves gaps.
@@ -374,10 +372,10 @@ pub enum NothingToIdentify {
 }
 
 /// Records, and how models are to be identified from them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {
     /// The records, in the units of the channels.
-    pub records: Arc<[FlightRecord]>,
+    pub records: Shared<[FlightRecord]>,
     /// How.
     pub options: Options,
 }
@@ -402,7 +400,10 @@ impl IdentificationRequest {
         if held_out.len() == flights.len() {
             return Err(NothingToIdentify::AllHeldOut);
         }
-        Ok(Self { records: flights.into(), options: Options { held_out, ..Options::new(band, preparation) } })
+        Ok(Self {
+            records: Arc::<[_]>::from(flights).into(),
+            options: Options { held_out, ..Options::new(band, preparation) },
+        })
     }
 
     /// Identifies models.
@@ -415,12 +416,6 @@ impl IdentificationRequest {
         progress: &dyn Progress,
     ) -> Result<Identification, IdentificationError> {
         identify(&self.records, &self.options, executor, progress)
-    }
-}
-
-impl PartialEq for IdentificationRequest {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.records, &other.records) && self.options == other.options
     }
 }
 
@@ -454,8 +449,7 @@ impl IdentifyJob {
 
     /// What it has told so far.
     pub fn told(&self) -> IdentificationNews {
-        // A panic while the lock was held leaves news that are still whole.
-        self.news.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        told(&self.news).clone()
     }
 }
 
@@ -463,6 +457,11 @@ impl PartialEq for IdentifyJob {
     fn eq(&self, other: &Self) -> bool {
         self.condition == other.condition && self.request == other.request
     }
+}
+
+/// The news; a panic while they were locked leaves them whole.
+fn told(news: &Mutex<IdentificationNews>) -> MutexGuard<'_, IdentificationNews> {
+    news.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Keeps the news, and hands on the rest.
@@ -481,11 +480,11 @@ impl Progress for Told<'_> {
     }
 
     fn step(&self, what: &str) {
-        what.clone_into(&mut self.news.lock().unwrap_or_else(PoisonError::into_inner).step);
+        what.clone_into(&mut told(self.news).step);
     }
 
     fn first_model(&self, model: &StateSpace) {
-        self.news.lock().unwrap_or_else(PoisonError::into_inner).first_model = Some(Arc::new(model.clone()));
+        told(self.news).first_model = Some(Arc::new(model.clone()));
     }
 }
 
@@ -497,8 +496,7 @@ impl Job for IdentifyJob {
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let begin = Instant::now();
         let found = self.request.identify(executor.as_ref(), &Told { progress, news: &self.news });
-        let duration_s = Some(begin.elapsed().as_secs_f64());
-        self.news.lock().unwrap_or_else(PoisonError::into_inner).duration_s = duration_s;
+        told(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
         match found {
             Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
             found => Ok(found.map(Arc::new)),
@@ -507,21 +505,14 @@ impl Job for IdentifyJob {
 }
 
 /// What a model gives for the inputs of a flight record (M14, section 6).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
     /// The record, in the units of the dataset.
-    pub record: Arc<FlightRecord>,
+    pub record: Shared<FlightRecord>,
     /// How its channels are prepared.
     pub preparation: Preparation,
     /// The model.
     pub model: StateSpace,
-}
-
-impl PartialEq for SimulationJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_record = Arc::ptr_eq(&self.record, &other.record);
-        same_record && self.preparation == other.preparation && self.model == other.model
-    }
 }
 
 impl Job for SimulationJob {

@@ -34,6 +34,7 @@ mod time_histories;
 mod time_history_tables;
 mod uncertainty;
 
+// What most files of the room speak of: they take it from here, with one another's types, by `use super::*`.
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::sync::{Arc, LazyLock};
@@ -115,7 +116,6 @@ impl Default for ConditionChoice {
 }
 
 impl ConditionChoice {
-    /// Every model kept, none pinned, the condition scheduled.
     /// Puts every model of both bundles back.
     pub(super) fn restore_all(&mut self) {
         self.physics.restore_all();
@@ -142,18 +142,12 @@ impl ConditionChoice {
 
     /// The choices in one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 
     /// The choices in one bundle, to change.
     pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
-        match kind {
-            BundleKind::Physics => &mut self.physics,
-            BundleKind::Identified => &mut self.identified,
-        }
+        kind.pick(&mut self.physics, &mut self.identified)
     }
 }
 
@@ -190,8 +184,7 @@ impl Study {
     /// The study of a dataset before any decision.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
-        let ids = dataset.conditions().iter().map(|condition| condition.id());
-        let choices = ids.map(|id| (id, ConditionChoice::default())).collect();
+        let choices = dataset.ids().map(|id| (id, ConditionChoice::default())).collect();
         Self {
             dataset,
             settings,
@@ -254,16 +247,8 @@ impl Study {
     /// analysed to compare them.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant { settings, choices, .. } = self.variant(name)?;
-        let dataset = Arc::clone(&self.dataset);
-        Some(Study {
-            dataset,
-            settings: settings.clone(),
-            choices: choices.clone(),
-            variants: Vec::new(),
-            signs: self.signs.clone(),
-            requirements: Arc::clone(&self.requirements),
-            taken: self.taken.clone(),
-        })
+        let (settings, choices) = (settings.clone(), choices.clone());
+        Some(Study { settings, choices, variants: Vec::new(), ..self.clone() })
     }
 
     pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {

@@ -74,10 +74,6 @@ impl OverviewLimits {
     }
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
-}
-
 impl Analysis {
     /// The same analysis, of which requirements are asked with other settings.
     pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
@@ -195,7 +191,7 @@ pub struct RequirementCaution {
 }
 
 /// What a qualification asks of the models of every condition, as it is written.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// The identified band \[rad/s\].
     pub band_rad_s: [f64; 2],
@@ -286,40 +282,24 @@ impl AskedCondition<'_> {
 }
 
 /// What is found of one condition.
-#[derive(Default)]
-struct ConditionFindings {
-    bandwidth: Vec<BandwidthFinding>,
-    modes: Vec<ModeFinding>,
-    summary: Vec<SummaryFinding>,
-    missing: Vec<MissingFinding>,
-}
-
-impl ConditionFindings {
-    fn of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Self {
-        let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
-        let result = match analysis.conditions.get(&id) {
-            Some(Ok(result)) => result,
-            Some(Err(failure)) => return Self::without(missing("all", failure.to_string())),
-            None => return Self::without(missing("all", "it was not analysed".to_owned())),
-        };
-        let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
-        let asked = AskedCondition { analysis, result, scheduled };
-        let (modes, no_modes) = match mode_findings(&asked, known) {
-            Ok(modes) => (modes, None),
-            Err(why) => (Vec::new(), Some(missing("modes", why))),
-        };
-        let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
-        Self {
-            bandwidth: bandwidth_findings(&asked),
-            modes,
-            summary: against_flight.map(|role| asked.summary(role)).collect(),
-            missing: no_modes.into_iter().collect(),
-        }
+fn findings_of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Requirements {
+    let mut found = Requirements::default();
+    let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
+    let result = match analysis.result(id) {
+        Ok(result) => result,
+        Err(why) => return Requirements { missing: vec![missing("all", why)], ..found },
+    };
+    let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
+    let asked = AskedCondition { analysis, result, scheduled };
+    found.bandwidth = bandwidth_findings(&asked);
+    match mode_findings(&asked, known) {
+        Ok(modes) => found.modes = modes,
+        Err(why) => found.missing.push(missing("modes", why)),
     }
-
-    fn without(missing: MissingFinding) -> Self {
-        Self { missing: vec![missing], ..Self::default() }
-    }
+    let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
+    found.summary = against_flight.map(|role| asked.summary(role)).collect();
+    found.cautions = reversed_phases(analysis, &found.bandwidth);
+    found
 }
 
 /// What a qualification asks of the models of every condition with a result (M17.1, M17.3, M17.4), without records. Each condition is
@@ -333,23 +313,19 @@ pub fn requirements_of(
     execution: &Execution<'_>,
 ) -> Result<Requirements, Cancelled> {
     let settings = &analysis.study.settings;
-    let ids: Vec<ConditionId> = analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
-    let found = execution.each(ids.len(), 1, |index| ConditionFindings::of(analysis, known, ids[index]))?;
+    let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
+    let found = execution.each(ids.len(), 1, |index| findings_of(analysis, known, ids[index]))?;
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
         interval_level: settings.uncertainty.level,
         attitude_command: analysis.study.requirements.attitude_command.clone(),
-        bandwidth: Vec::new(),
-        modes: Vec::new(),
-        summary: Vec::new(),
-        missing: Vec::new(),
-        cautions: Vec::new(),
+        ..Requirements::default()
     };
     if let Err(error) = &analysis.schedule {
         requirements.missing.push(MissingFinding { condition: None, what: "scheduled", why: error.to_string() });
     }
     for of_condition in found {
-        requirements.cautions.extend(reversed_phases(analysis, &of_condition.bandwidth));
+        requirements.cautions.extend(of_condition.cautions);
         requirements.bandwidth.extend(of_condition.bandwidth);
         requirements.modes.extend(of_condition.modes);
         requirements.summary.extend(of_condition.summary);
@@ -428,21 +404,14 @@ impl Analysis {
     /// [`RoleModelError`] where the model has no matrices or acts in discrete time, there is no schedule, or matrices cannot be
     /// computed with.
     pub fn role_model(&self, of: &ConditionAnalysis, role: RequirementRole) -> Result<StateSpace, RoleModelError> {
-        let representative = |kind: BundleKind| {
-            let place = match kind {
-                BundleKind::Physics => of.comparison.physics.model,
-                BundleKind::Identified => of.comparison.identified.model,
-            };
-            continuous(&of.condition.bundle(kind)[place])
-        };
+        let representative = |kind: BundleKind| continuous(&of.condition.bundle(kind)[of.representative(kind).model]);
         let corrected = |by: AssessedCorrection| -> Result<StateSpace, RoleModelError> {
             let correction = by.of(self, of)?;
             Ok(of.corrected_model(representative(BundleKind::Physics)?, &correction, Pade::default())?.model)
         };
         match role {
-            RequirementRole::Physics => Ok(without_delays(representative(BundleKind::Physics)?, Pade::default())?),
-            RequirementRole::Identified => {
-                Ok(without_delays(representative(BundleKind::Identified)?, Pade::default())?)
+            RequirementRole::Physics | RequirementRole::Identified => {
+                Ok(without_delays(representative(role.bundle())?, Pade::default())?)
             }
             RequirementRole::Corrected => corrected(AssessedCorrection::Own),
             RequirementRole::Scheduled => corrected(AssessedCorrection::Scheduled),

@@ -13,28 +13,16 @@ use crate::requirements::{BandwidthRule, NamedBy};
 use super::*;
 
 /// What a qualification asks of an analysis, with its error bars where they are known.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// How sure its values are.
-    pub uncertainty: Option<Arc<Uncertainty>>,
+    pub uncertainty: Option<Shared<Uncertainty>>,
     /// What is asked with, which an analysis does not depend on.
     pub settings: Arc<RequirementSettings>,
     /// What was identified of conditions.
     pub known: KnownPoles,
-}
-
-impl PartialEq for RequirementsJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_bars = match (&self.uncertainty, &other.uncertainty) {
-            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
-            (None, None) => true,
-            _ => false,
-        };
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis && same_bars && self.settings == other.settings && self.known == other.known
-    }
 }
 
 impl Job for RequirementsJob {
@@ -43,7 +31,8 @@ impl Job for RequirementsJob {
     type Output = Arc<Requirements>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let analysis = Analysis { uncertainty: self.uncertainty.clone(), ..self.analysis.asked_with(&self.settings) };
+        let analysis =
+            Analysis { uncertainty: self.uncertainty.as_deref().cloned(), ..self.analysis.asked_with(&self.settings) };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
         Ok(Arc::new(requirements_of(&analysis, &self.known, &execution)?))
     }

@@ -162,7 +162,7 @@ fn default_agreement_db() -> f64 {
     DEFAULT_AGREEMENT_DB
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

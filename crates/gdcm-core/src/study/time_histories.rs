@@ -20,18 +20,12 @@ pub(super) const LEAST_PIECE_S: f64 = 2.0;
 const WHAT: &str = "time histories";
 
 /// A flight record that models are compared with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
     /// Its samples, in the units of the dataset's channels.
-    pub flight: Arc<FlightRecord>,
+    pub flight: Shared<FlightRecord>,
     /// Whether the identified models were kept from it.
     pub held_out: bool,
-}
-
-impl PartialEq for HistoryRecord {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.flight, &other.flight) && self.held_out == other.held_out
-    }
 }
 
 /// The flight records of a condition, and how they are prepared.
@@ -54,7 +48,7 @@ impl HistoryRecords {
     ) -> Self {
         let used = records.into_iter().filter_map(|record| {
             let flight = Arc::clone(record.used_flight()?);
-            Some(HistoryRecord { flight, held_out: record.guess.held_out })
+            Some(HistoryRecord { flight: flight.into(), held_out: record.guess.held_out })
         });
         Self { condition, records: used.collect(), preparation }
     }
@@ -66,21 +60,14 @@ impl HistoryRecords {
 }
 
 /// What is asked for: records against an analysis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// The records, condition by condition.
     pub records: Vec<HistoryRecords>,
     /// The tolerances.
     pub tolerances: ToleranceTable,
-}
-
-impl PartialEq for TimeHistoriesJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis && self.records == other.records && self.tolerances == other.tolerances
-    }
 }
 
 impl Job for TimeHistoriesJob {
@@ -293,8 +280,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     if records.iter().all(|of| of.records.is_empty()) {
         return vec![missing_of(None, "no flight record was given".to_owned())];
     }
-    let ids = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
-    let without = ids.filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
+    let without = analysis.study.dataset.ids().filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
     without.map(|id| missing_of(Some(id), "no flight record of it was given".to_owned())).collect()
 }
 
@@ -492,7 +478,7 @@ mod tests {
     fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
         let (inputs, outputs) = analysis.study.dataset.names_of_channels();
         let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
-        let record = HistoryRecord { flight: Arc::new(flight), held_out: true };
+        let record = HistoryRecord { flight: Arc::new(flight).into(), held_out: true };
         let preparation = Preparation { keep_frozen: true, ..Preparation::of(&inputs, &outputs) };
         vec![HistoryRecords { condition: CONDITION, records: vec![record], preparation }]
     }
@@ -529,7 +515,7 @@ mod tests {
         let analysis = &EXAMPLE.analysis;
         let flights = [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
         let mut given = records(analysis, flights[0].clone());
-        given[0].records.push(HistoryRecord { flight: Arc::new(flights[1].clone()), held_out: false });
+        given[0].records.push(HistoryRecord { flight: Arc::new(flights[1].clone()).into(), held_out: false });
         let table = ToleranceTable::default();
         let found = time_histories_of(analysis, &given, &table, &Execution::sequential()).unwrap();
         let role = RequirementRole::Physics;
@@ -631,7 +617,7 @@ mod tests {
         }
         let analysis = Arc::new(EXAMPLE.analysis.clone());
         let records = records(&analysis, flown(&analysis, RequirementRole::Identified, 600));
-        let job = TimeHistoriesJob { analysis, records, tolerances: ToleranceTable::default() };
+        let job = TimeHistoriesJob { analysis: analysis.into(), records, tolerances: ToleranceTable::default() };
         let mut executor: Box<dyn crate::executor::Executor> = Box::new(Sequential);
         assert_eq!(job.run(&mut executor, &Stopped).unwrap_err(), Cancelled);
         assert_eq!(job.run(&mut executor, &Unobserved).unwrap().records.len(), 4);

@@ -29,7 +29,7 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
         };
         assert_eq!((&assessed.changes, assessed.missing.len()), (changes, 0));
     }
-    let job = AssessmentJob { analysis: Arc::new(analysis.clone()), choice: PAPER };
+    let job = AssessmentJob { analysis: Arc::new(analysis.clone()).into(), choice: PAPER };
     assert_eq!(*job.run(&mut (), &Unobserved).unwrap(), table);
 }
 

@@ -170,10 +170,7 @@ fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let changes: Vec<f64> = analysis
         .assessment
         .values()
-        .filter_map(|assessed| match assessed {
-            gdcm_core::study::Assessed::Nominal(changes) => Some(changes),
-            gdcm_core::study::Assessed::LeftOut { .. } => None,
-        })
+        .flatten()
         .flat_map(|changes| measuring.marked().filter_map(|pair| Some(changes[pair]?.total())))
         .collect();
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;

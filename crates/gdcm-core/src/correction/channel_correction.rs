@@ -25,6 +25,23 @@ pub struct ChannelCorrection {
 }
 
 impl ChannelCorrection {
+    /// These gains with these delays \[s\].
+    pub fn of_delays(gains: Channels<f64>, delays_s: Channels<f64>) -> Self {
+        Self {
+            input_gains: gains.inputs,
+            output_gains: gains.outputs,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
+            leads: None,
+        }
+    }
+
+    /// These gains with signed delays (M15).
+    pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
+        let delays_s = leads.delays_s();
+        Self { leads: Some(leads), ..Self::of_delays(gains, delays_s) }
+    }
+
     /// Net gain of a response, `k_o k_i` (M11).
     pub fn net_gain(&self, pair: Pair) -> f64 {
         self.output_gains[pair.output] * self.input_gains[pair.input]

@@ -318,15 +318,16 @@ impl Schedule {
 
     /// What the scheduled leads cost: of each channel the most over the airspeeds. None of a schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
-        const STEPS: u32 = 100;
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
-        let kt = |step: u32| {
-            let part = f64::from(step) / f64::from(STEPS);
-            self.airspeeds.min_kt + part * (self.airspeeds.max_kt - self.airspeeds.min_kt)
-        };
-        let prices = (0..=steps).filter_map(|step| LeadPrice::of(&leads.at(&self.airspeeds, kt(step))));
+        let prices = (0..=steps).filter_map(|step| LeadPrice::of(&leads.at(&self.airspeeds, self.step_kt(step))));
         prices.reduce(|most, other| most.or_more(&other))
+    }
+
+    /// One of the places \[kt\] between the least and the greatest airspeed at which the schedule is looked at.
+    fn step_kt(&self, step: u32) -> f64 {
+        let part = f64::from(step) / f64::from(STEPS);
+        self.airspeeds.min_kt + part * (self.airspeeds.max_kt - self.airspeeds.min_kt)
     }
 
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
@@ -355,9 +356,8 @@ impl Schedule {
         }
         let channels = self.gains.iter().map(|(channel, _)| channel);
         cautions.extend(channels.filter_map(|channel| self.overshoot(points, channel)));
-        let span = self.airspeeds.max_kt - self.airspeeds.min_kt;
         let is_positive = |step: u32| {
-            let correction = self.at(self.airspeeds.min_kt + span * f64::from(step) / f64::from(STEPS));
+            let correction = self.at(self.step_kt(step));
             correction.input_gains.iter().chain(&correction.output_gains).all(|gain| *gain > 0.0)
         };
         if !(0..=STEPS).all(is_positive) {
@@ -413,22 +413,17 @@ impl Schedule {
                 ScheduledQuantity::Gain => value,
             }
         });
-        let leads = self.leads.as_ref().map(|leads| leads.at(&self.airspeeds, airspeed_kt));
-        let delays_s = match (&self.delays, &leads) {
-            (_, Some(leads)) => leads.delays_s(),
-            (Some(DelaySchedule { taus_s, upper_s }), None) => {
+        if let Some(leads) = &self.leads {
+            return ChannelCorrection::of_leads(gains, leads.at(&self.airspeeds, airspeed_kt));
+        }
+        let delays_s = match &self.delays {
+            Some(DelaySchedule { taus_s, upper_s }) => {
                 let upper_s = upper_s.at(&self.airspeeds, airspeed_kt);
                 taus_s.map(|_, tau_s| tau_s.at(&self.airspeeds, airspeed_kt).min(upper_s).max(0.0))
             }
-            (None, None) => gains.map(|_, _| 0.0),
+            None => gains.map(|_, _| 0.0),
         };
-        ChannelCorrection {
-            input_gains: gains.inputs,
-            output_gains: gains.outputs,
-            input_delays_s: delays_s.inputs,
-            output_delays_s: delays_s.outputs,
-            leads,
-        }
+        ChannelCorrection::of_delays(gains, delays_s)
     }
 }
 

@@ -5,17 +5,9 @@ use crate::schedule::{FormComparison, LeadDegreeFit, compare_forms, compare_lead
 
 use super::*;
 
-/// The nominal model of a condition under the scheduled correction (M12).
-#[derive(Clone, Debug, PartialEq)]
-pub enum Assessed {
-    /// J of every response before and after.
-    Nominal(PairTable<Option<CostChange>>),
-    /// The condition is left out, and why.
-    LeftOut {
-        /// The reason in words.
-        why: String,
-    },
-}
+/// J of every response of the nominal model of a condition before and after the scheduled correction (M12), or in words why the
+/// condition is left out.
+pub type Assessed = Result<PairTable<Option<CostChange>>, String>;
 
 /// Everything the analysis says of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -205,9 +197,14 @@ impl ConditionAnalysis {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
     }
 
-    /// Name of the representative of a bundle.
+    /// The model that represents a bundle.
+    pub fn representative_model(&self, kind: BundleKind) -> &Model {
+        &self.condition.bundle(kind)[self.representative(kind).model]
+    }
+
+    /// Its name.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
-        &self.condition.bundle(kind)[self.representative(kind).model].name
+        &self.representative_model(kind).name
     }
 
     /// Mean distance of a model to the other kept ones, where it has one.

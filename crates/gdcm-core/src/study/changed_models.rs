@@ -68,35 +68,29 @@ impl AdoptedModels {
     }
 }
 
-/// What a study has taken, and the dataset as its file has it.
-#[derive(Clone, Debug)]
-pub struct Taken {
-    file: Arc<Dataset>,
-    models: BTreeMap<ConditionId, Arc<AdoptedModels>>,
-}
-
 impl Study {
     /// The dataset as its file has it, whatever was taken since.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
-        self.taken.as_ref().map_or(&self.dataset, |taken| &taken.file)
+        self.file.as_ref().unwrap_or(&self.dataset)
     }
 
     /// The models taken in place of those of the file, condition by condition.
     pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
-        self.taken.iter().flat_map(|taken| taken.models.iter().map(|(id, models)| (*id, models)))
+        self.taken.iter().map(|(id, models)| (*id, models))
     }
 
     /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
     pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<AdoptedModels>)]) -> Result<(), EditRefusal> {
-        let mut models: BTreeMap<_, _> = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
+        let mut models = self.taken.clone();
         models.extend(taken.iter().cloned());
         self.rebuild(models, self.signs.clone())
     }
 
     /// Puts the models of the file back into a condition.
     pub(super) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
-        let models = self.taken_models().filter(|(id, _)| *id != condition);
-        self.rebuild(models.map(|(id, models)| (id, Arc::clone(models))).collect(), self.signs.clone())
+        let mut models = self.taken.clone();
+        models.remove(&condition);
+        self.rebuild(models, self.signs.clone())
     }
 
     /// Turns the models of a channel, or puts them back as they were.
@@ -108,8 +102,7 @@ impl Study {
         let mut signs = self.signs.clone();
         signs.remove(&channel);
         signs.extend(of.map(|of| (channel, of)));
-        let models = self.taken_models().map(|(id, models)| (id, Arc::clone(models))).collect();
-        self.rebuild(models, signs)
+        self.rebuild(self.taken.clone(), signs)
     }
 
     /// The dataset of the file with these models in its conditions, then turned.
@@ -120,8 +113,8 @@ impl Study {
             dataset = Arc::new(taken.put_into(&dataset, *id)?);
         }
         self.dataset = turned(&dataset, &signs)?;
-        self.taken = (!models.is_empty() || !signs.is_empty()).then_some(Taken { file, models });
-        self.signs = signs;
+        self.file = (!models.is_empty() || !signs.is_empty()).then_some(file);
+        (self.taken, self.signs) = (models, signs);
         self.forget_absent_models();
         Ok(())
     }
@@ -132,17 +125,9 @@ impl Study {
         let is_there = |id: ConditionId, name: &str| {
             dataset.condition(id).is_some_and(|condition| condition.position(BundleKind::Identified, name).is_some())
         };
-        for (id, choice) in &mut self.choices {
+        let of_variants = self.variants.iter_mut().map(|variant| &mut Arc::make_mut(variant).choices);
+        for (id, choice) in of_variants.chain([&mut self.choices]).flatten() {
             choice.identified.retain(|name| is_there(*id, name));
-        }
-        for variant in &mut self.variants {
-            let mut kept = variant.as_ref().clone();
-            for (id, choice) in &mut kept.choices {
-                choice.identified.retain(|name| is_there(*id, name));
-            }
-            if kept != **variant {
-                *variant = Arc::new(kept);
-            }
         }
     }
 }
@@ -191,8 +176,7 @@ impl SignRole {
 
     /// Whether the models of a bundle are turned.
     pub fn covers(self, kind: BundleKind) -> bool {
-        matches!((self, kind), (Self::All, _) | (Self::Physics, BundleKind::Physics))
-            || (self, kind) == (Self::Identified, BundleKind::Identified)
+        self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
     }
 }
 

@@ -207,12 +207,10 @@ impl Engine {
             want_leads: without.conditions.values().flatten().filter(|result| result.offer.is_some()).count(),
             left_out_fits: Vec::new(),
         };
-        let results: Vec<&ConditionAnalysis> =
-            with.conditions.values().filter_map(|outcome| outcome.as_ref().ok()).collect();
-        let place = |at: usize| of_condition(&with.study, results[at], &grid, progress);
+        let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
         let share = 0.2 / results.len().max(1) as f64;
-        let looked_at = each(self.executor(), 0..results.len(), |at| {
-            let found = place(at)?;
+        let looked_at = each(self.executor(), &results, |result| {
+            let found = of_condition(&with.study, result, &grid, progress)?;
             told(share)?;
             Ok::<_, Cancelled>(found)
         });
@@ -249,8 +247,7 @@ impl Engine {
             shares.advance(share, "couplings without each condition")?;
             Ok(LeftOutCondition::of(id, &analysis, without))
         };
-        let found = each(self.executor(), ids, of_condition);
-        Ok(found.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.into_iter().flatten().collect())
+        each(self.executor(), ids, of_condition).into_iter().filter_map(Result::transpose).collect()
     }
 }
 
@@ -413,23 +410,22 @@ impl CouplingCost {
 }
 
 /// Sums of J of the responses of many conditions.
-#[derive(Default)]
 pub(super) struct CostSums<'a> {
-    on_axis: Option<&'a PairTable<bool>>,
+    on_axis: &'a PairTable<bool>,
     /// Off the axis and on it: number, J before any correction, without couplings, with them.
     sums: [(usize, [f64; 3]); 2],
 }
 
 impl<'a> CostSums<'a> {
     pub(super) fn new(on_axis: &'a PairTable<bool>) -> Self {
-        Self { on_axis: Some(on_axis), ..Self::default() }
+        Self { on_axis, sums: Default::default() }
     }
 
     /// Adds the responses of a condition, without couplings and with them.
     pub(super) fn add(&mut self, without: &PairTable<Option<CostChange>>, with: &PairTable<Option<CostChange>>) {
         let both = |(pair, of): (Pair, &Option<CostChange>)| Some((pair, (*of)?, with[pair]?));
         for (pair, without, with) in without.iter().filter_map(both) {
-            let (count, sums) = &mut self.sums[usize::from(self.on_axis.is_some_and(|on_axis| on_axis[pair]))];
+            let (count, sums) = &mut self.sums[usize::from(self.on_axis[pair])];
             *count += 1;
             let added = [without.uncorrected, without.corrected, with.corrected].map(|cost| cost.total());
             sums.iter_mut().zip(added).for_each(|(sum, cost)| *sum += cost);

@@ -131,17 +131,16 @@ impl CouplingsAssessment {
         remarks.extend(self.ringing_words().map(caution));
         if self.want_leads > 0 && self.couplings == CouplingCorrection::MixingAndFeedback {
             remarks.push(caution(format!(
-                "In {} {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
+                "In {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
                  poles far from where they were. Correct the phase by leads first.",
-                self.want_leads,
-                if self.want_leads == 1 { "condition" } else { "conditions" }
+                counted(self.want_leads)
             )));
         }
         let conditions = self.fitted.problem.conditions.len();
         if conditions < LEAST_CONDITIONS {
             remarks.push(caution(format!(
-                "Couplings of {conditions} {}: three are needed for error bars and for J of conditions left out.",
-                if conditions == 1 { "condition" } else { "conditions" }
+                "Couplings of {}: three are needed for error bars and for J of conditions left out.",
+                counted(conditions)
             )));
         }
         let fit = &self.fitted.fit;
@@ -170,16 +169,10 @@ impl CouplingsAssessment {
                 self.unstable.iter().filter(|of| of.is_representative == is_representative).collect();
             let is_in_band = poles.iter().map(|of| of.is_in_band).max()?;
             let whose = if is_representative { "physics representatives" } else { "other kept physics models" };
+            let places = unstable_places(&poles);
             let text = match poles.len() {
-                1 => {
-                    format!("A pole of the {whose} is newly unstable with the couplings: {}.", unstable_places(&poles))
-                }
-                count => {
-                    format!(
-                        "{count} poles of {whose} are newly unstable with the couplings: {}.",
-                        unstable_places(&poles)
-                    )
-                }
+                1 => format!("A pole of the {whose} is newly unstable with the couplings: {places}."),
+                count => format!("{count} poles of {whose} are newly unstable with the couplings: {places}."),
             };
             Some(Remark::new(if is_in_band { RemarkKind::Trouble } else { RemarkKind::Caution }, text))
         };
@@ -208,6 +201,11 @@ impl CouplingsAssessment {
             )
         })
     }
+}
+
+/// "1 condition", "11 conditions".
+fn counted(conditions: usize) -> String {
+    format!("{conditions} condition{}", if conditions == 1 { "" } else { "s" })
 }
 
 /// Whether a channel is an angular rate, by its unit.
@@ -308,11 +306,10 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
 impl CouplingsAssessment {
     /// "mixing and feedback of 11 conditions; its least-squares problem is solved to 3e-16".
     pub fn heading(&self) -> String {
-        let count = self.fitted.problem.conditions.len();
         format!(
-            "{} fitted to {count} {}; the normal equations of the last solve hold to {:.0e}",
+            "{} fitted to {}; the normal equations of the last solve hold to {:.0e}",
             self.couplings.name(),
-            if count == 1 { "condition" } else { "conditions" },
+            counted(self.fitted.problem.conditions.len()),
             self.fitted.fit.residual
         )
     }

@@ -30,7 +30,9 @@ impl fmt::Display for DecisionDifference {
 /// condition. What was kept under names does not count.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let (a, b) = (&before.settings, &after.settings);
-    let mut differences: Vec<DecisionDifference> = setting_differences(a, b).collect();
+    let changed = SETTINGS.iter().filter(|setting| setting.value(a) != setting.value(b));
+    let changed = changed.map(|setting| DecisionDifference::new(setting.name, setting.words(a), setting.words(b)));
+    let mut differences: Vec<DecisionDifference> = changed.collect();
     differences.extend(pair_differences(before, (&a.constrained, &b.constrained), ["held", "free"]));
     differences.extend(pair_differences(before, (&a.ignored, &b.ignored), ["ignored", "fitted"]));
     let (inputs, outputs) = before.dataset.names_of_channels();
@@ -45,24 +47,17 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
     for condition in before.dataset.conditions() {
         let id = condition.id();
         let (a, b) = (before.choice(id), after.choice(id));
-        if a.scheduled != b.scheduled {
-            let word = |scheduled| if scheduled { "in the schedule" } else { "left out of the schedule" };
-            differences.push(DecisionDifference::new(format!("condition {id}"), word(a.scheduled), word(b.scheduled)));
-        }
-        if a.held_out != b.held_out {
-            let word = |held_out| if held_out { "held out" } else { "not held out" };
-            differences.push(DecisionDifference::new(format!("condition {id}"), word(a.held_out), word(b.held_out)));
+        let scheduled = ([a.scheduled, b.scheduled], ["left out of the schedule", "in the schedule"]);
+        let held_out = ([a.held_out, b.held_out], ["not held out", "held out"]);
+        for ([before, after], words) in [scheduled, held_out].into_iter().filter(|([a, b], _)| a != b) {
+            let [before, after] = [before, after].map(|is_so| words[usize::from(is_so)]);
+            differences.push(DecisionDifference::new(format!("condition {id}"), before, after));
         }
         for kind in BundleKind::BOTH {
             differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
         }
     }
     differences
-}
-
-fn setting_differences(before: &Settings, after: &Settings) -> impl Iterator<Item = DecisionDifference> {
-    let changed = SETTINGS.iter().filter(|setting| setting.value(before) != setting.value(after));
-    changed.map(|setting| DecisionDifference::new(setting.name, setting.words(before), setting.words(after)))
 }
 
 fn pair_differences(
@@ -144,18 +139,6 @@ pub enum Difference {
     },
 }
 
-impl Difference {
-    /// A decision of a variant that no longer applies.
-    fn of_variant(self, name: &str) -> Self {
-        match self {
-            Difference::NotApplied { decision, why } => {
-                Difference::NotApplied { decision: format!("{decision}, of variant \"{name}\""), why }
-            }
-            other => other,
-        }
-    }
-}
-
 impl fmt::Display for Difference {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -202,7 +185,7 @@ impl Decisions {
         Self {
             settings: study.settings.named(&study.dataset),
             choices: study.choices.clone(),
-            taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
+            taken: study.taken.clone().into_iter().collect(),
             signs: study.turned_channels(),
             requirements: Arc::clone(&study.requirements),
             variants: study
@@ -224,8 +207,7 @@ impl Decisions {
         }
         study.settings = self.settings.with_responses(|verb, names| marked(verb, names, &study, &mut differences));
         for taken in &self.taken {
-            let edit = Edit::TakeModels(vec![taken.clone()]);
-            carry_out(&edit, &mut study, &mut differences);
+            carry_out(&Edit::TakeModels(vec![taken.clone()]), &mut study, &mut differences);
         }
         for turned in &self.signs {
             match turned.find(&study.dataset) {
@@ -242,8 +224,13 @@ impl Decisions {
             take_choice(&mut study, condition, choice, &mut differences);
         }
         for (name, decisions) in &self.variants {
-            let (of_variant, not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
-            differences.extend(not_applied.into_iter().map(|difference| difference.of_variant(name)));
+            let (of_variant, mut not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
+            for difference in &mut not_applied {
+                if let Difference::NotApplied { decision, .. } = difference {
+                    decision.push_str(&format!(", of variant \"{name}\""));
+                }
+            }
+            differences.extend(not_applied);
             let Study { settings, choices, .. } = of_variant;
             if study.variant(name).is_none() {
                 study.variants.push(Arc::new(Variant { name: name.clone(), settings, choices }));
@@ -306,10 +293,9 @@ impl Inventory {
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let now = Inventory::of(dataset);
         let mut differences = Vec::new();
-        let by_id = |inventory: &'_ Inventory| -> BTreeMap<ConditionId, ConditionInventory> {
-            inventory.0.iter().map(|condition| (condition.id, condition.clone())).collect()
-        };
-        let (before, now) = (by_id(self), by_id(&now));
+        let [before, now] = [self, &now].map(|of| -> BTreeMap<ConditionId, &ConditionInventory> {
+            of.0.iter().map(|condition| (condition.id, condition)).collect()
+        });
         let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();
         for id in ids {
             match (before.get(&id), now.get(&id)) {

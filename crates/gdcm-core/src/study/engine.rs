@@ -13,8 +13,9 @@ use super::*;
 /// Where couplings are asked for, they are fitted to the representatives and what follows these is of physics models with couplings.
 ///
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
+#[derive(Clone)]
 pub struct Engine {
-    executor: Box<dyn Executor>,
+    executor: Arc<dyn Executor>,
     /// How far the proof of each condition's gains may go.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
@@ -43,7 +44,7 @@ impl Engine {
     /// An engine whose work is carried out by `executor`.
     pub fn with_executor(executor: Box<dyn Executor>) -> Self {
         Self {
-            executor,
+            executor: executor.into(),
             proofs: ProofBudget::default(),
             dataset: None,
             known: KnownModels::default(),
@@ -56,16 +57,7 @@ impl Engine {
 
     /// Another engine that knows what this one has computed, and goes its own way from there.
     pub fn fork(&self, executor: Box<dyn Executor>) -> Self {
-        Self {
-            executor,
-            proofs: self.proofs,
-            dataset: self.dataset.clone(),
-            known: self.known.clone(),
-            couplings: self.couplings.clone(),
-            conditions: self.conditions.clone(),
-            drawn: self.drawn,
-            curves: self.curves.clone(),
-        }
+        Self { executor: executor.into(), ..self.clone() }
     }
 
     /// Who carries out its work.
@@ -122,10 +114,7 @@ impl Engine {
         };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
         let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
-        let assess = |place: usize| match assessed(&analysis, ids[place], choice) {
-            Ok(of) => Assessed::Nominal(of.changes),
-            Err(why) => Assessed::LeftOut { why },
-        };
+        let assess = |place: usize| Ok(assessed(&analysis, ids[place], choice)?.changes);
         let assessment = execution.each(ids.len(), 0, assess)?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
         Ok(analysis)

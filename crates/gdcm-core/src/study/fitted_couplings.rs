@@ -213,8 +213,8 @@ impl ConditionAnalysis {
     /// Where the couplings move the poles of the physics representative; nothing without couplings, and where it has no poles.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
-        let representative = &self.condition.bundle(BundleKind::Physics)[self.comparison.physics.model];
-        let shifts = self.coupled.as_ref().zip(representative.state_space()).map(|(coupled, of)| {
+        let representative = self.representative_model(BundleKind::Physics).state_space();
+        let shifts = self.coupled.as_ref().zip(representative).map(|(coupled, of)| {
             coupled.fitted.matrices().pole_shifts(of, self.airspeed_kt(), Pade::default()).unwrap_or_default()
         });
         shifts.unwrap_or_default()
@@ -230,10 +230,7 @@ impl ConditionAnalysis {
         physics: &'a StateSpace,
         pade: Pade,
     ) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
-        match &self.coupled {
-            None => Ok(Cow::Borrowed(physics)),
-            Some(coupled) => coupled.fitted.matrices().model(physics, self.airspeed_kt(), pade).map(Cow::Owned),
-        }
+        coupled_model(self.coupled.as_ref().map(|coupled| &coupled.fitted), physics, self.airspeed_kt(), pade)
     }
 
     /// `M_O H~ M_I`: a physics model with the couplings, then with a correction of its channels.
@@ -251,6 +248,19 @@ impl ConditionAnalysis {
     }
 }
 
+/// A physics model with couplings in its matrices; the model itself without.
+fn coupled_model<'a>(
+    fitted: Option<&Arc<FittedCouplings>>,
+    physics: &'a StateSpace,
+    airspeed_kt: f64,
+    pade: Pade,
+) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
+    match fitted {
+        None => Ok(Cow::Borrowed(physics)),
+        Some(fitted) => fitted.matrices().model(physics, airspeed_kt, pade).map(Cow::Owned),
+    }
+}
+
 impl Analysis {
     /// `M_O H~ M_I` of a physics model of any condition: also of one that has no result of its own.
     ///
@@ -264,11 +274,7 @@ impl Analysis {
         pade: Pade,
     ) -> Result<CorrectedModel, CoupledModelError> {
         let airspeed_kt = condition.flight_state().airspeed_kt;
-        match self.fitted_couplings() {
-            None => Ok(CorrectedModel::of(physics, correction, pade)?),
-            Some(fitted) => {
-                Ok(CorrectedModel::of(&fitted.matrices().model(physics, airspeed_kt, pade)?, correction, pade)?)
-            }
-        }
+        let coupled = coupled_model(self.fitted_couplings(), physics, airspeed_kt, pade)?;
+        Ok(CorrectedModel::of(&coupled, correction, pade)?)
     }
 }

@@ -1,6 +1,6 @@
 //! What lead filters leave of the difference between two representatives (M15.5).
 
-use crate::correction::{Bounds, DELAY_AGREEMENT_S, LeadPrice};
+use crate::correction::LeadPrice;
 use crate::response::LeadFilter;
 use crate::schedule::corrected_cost;
 use crate::units::ratio_to_db;
@@ -40,28 +40,6 @@ pub struct LeadOffer {
 }
 
 impl LeadOffer {
-    /// Signed delays in place of what the held responses get, where all of those want lead.
-    ///
-    /// The weight of the regularisation is 1 whatever delays are asked with: it decides on shares, not on what is held.
-    pub(super) fn problem(
-        delays_s: &PairTable<Option<f64>>,
-        held: &PairTable<bool>,
-        fitted: PairTable<bool>,
-        bounds: Bounds,
-    ) -> Option<Problem> {
-        let mut held_s = held.marked().map(|pair| delays_s[pair].unwrap_or_default()).peekable();
-        held_s.peek()?;
-        held_s.all(|delay_s| delay_s < 0.0).then(|| Problem {
-            quantity: Quantity::SignedDelay,
-            delta: delays_s.clone(),
-            constrained: held.clone(),
-            fitted,
-            bounds,
-            alpha: 1.0,
-            agreement: DELAY_AGREEMENT_S,
-        })
-    }
-
     /// The offer of these leads, where they would leave J of the held responses at least a tenth less than it is now.
     pub(super) fn of(
         leads: ChannelLeads,
@@ -70,14 +48,7 @@ impl LeadOffer {
         (omega, average): (&[f64], CostAverage),
     ) -> Option<Self> {
         const WORTH: f64 = 0.9;
-        let (delays_s, ones) = (leads.delays_s(), leads.taus_s.map(|_, _| 1.0));
-        let phase_alone = ChannelCorrection {
-            input_gains: ones.inputs,
-            output_gains: ones.outputs,
-            input_delays_s: delays_s.inputs,
-            output_delays_s: delays_s.outputs,
-            leads: Some(leads),
-        };
+        let phase_alone = ChannelCorrection::of_leads(leads.taus_s.map(|_, _| 1.0), leads);
         let left = corrected_cost(mismatch, &phase_alone, omega, average);
         let of_both = |(pair, left): (Pair, &Option<Cost>)| {
             let (left, now) = ((*left)?.phase, now[pair]?.corrected);

@@ -167,8 +167,10 @@ pub struct Study {
     pub signs: Signs,
     /// What requirements are asked with. No correction depends on it.
     pub requirements: Arc<RequirementSettings>,
-    /// Models taken in place of those of the dataset's file, with that dataset, where models are taken or turned; `dataset` has them.
-    pub(super) taken: Option<Taken>,
+    /// Models taken in place of those of the dataset's file; `dataset` has them.
+    pub(super) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
+    /// The dataset as its file has it, where models are taken or turned.
+    pub(super) file: Option<Arc<Dataset>>,
 }
 
 impl PartialEq for Study {
@@ -192,7 +194,8 @@ impl Study {
             variants: Vec::new(),
             signs: Signs::new(),
             requirements: Arc::default(),
-            taken: None,
+            taken: BTreeMap::new(),
+            file: None,
         }
     }
 

@@ -112,11 +112,7 @@ pub struct ModeFinding {
 /// Why there are none, in words.
 pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> Result<Vec<ModeFinding>, String> {
     let tolerances = &asked.analysis.study.requirements.mode_tolerances;
-    let representative = |kind: BundleKind| {
-        let condition = &asked.result.condition;
-        &condition.bundle(kind)[asked.result.representative(kind).model]
-    };
-    let (physics, identified) = (representative(BundleKind::Physics), representative(BundleKind::Identified));
+    let [physics, identified] = BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
     let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
     let of_corrected = coupled_modes(asked, physics)?;
     let flown = ModelModes { modes: &of_identified, states: &identified.states };

@@ -101,10 +101,11 @@ impl RequirementSettings {
 }
 
 /// Which model of a condition a number is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
     /// The physics representative as it is.
+    #[default]
     Physics,
     /// The same under the condition's own correction.
     Corrected,

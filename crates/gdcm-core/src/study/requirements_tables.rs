@@ -252,23 +252,6 @@ impl RequirementsOverview {
 /// A value of a cell, and whether it is beyond its limit.
 type Judged = (String, bool);
 
-/// One requirement.
-struct Requirement<'a> {
-    heads: [String; 3],
-    /// What stands in the column of a condition; none where there is no number.
-    cell: Box<dyn Fn(ConditionId) -> Option<Judged> + 'a>,
-}
-
-impl<'a> Requirement<'a> {
-    fn new(
-        name: impl Into<String>,
-        (unit, limit): (&str, String),
-        cell: impl Fn(ConditionId) -> Option<Judged> + 'a,
-    ) -> Self {
-        Self { heads: [name.into(), unit.to_owned(), limit], cell: Box::new(cell) }
-    }
-}
-
 impl Requirements {
     /// The corrected model of every condition against the identified one; with the answers to flight records their shares inside too.
     pub fn overview(
@@ -279,55 +262,48 @@ impl Requirements {
     ) -> RequirementsOverview {
         let ids: Vec<ConditionId> =
             self.summary.iter().filter(|of| of.role == RequirementRole::Corrected).map(|of| of.condition).collect();
-        let mut requirements: Vec<Requirement<'_>> = Vec::new();
-        for pair in dataset.measuring_pairs().marked() {
-            requirements.extend(self.of_bandwidth(pair, dataset, limits));
-        }
-        requirements.extend(histories.into_iter().flat_map(|of| of_records(of, limits)));
-        let of_modes = ("of those with a tolerance", "0".to_owned());
-        requirements.push(Requirement::new("modes beyond tolerance", of_modes, |id| self.modes_outside(id)));
-
         let columns = HEADS.map(str::to_owned).into_iter().chain(ids.iter().map(ToString::to_string));
         let title =
             "Corrected against identified models, condition by condition; the limits are the program's, of no standard";
         let mut overview = RequirementsOverview { table: Table::new(title, columns), outside: Vec::new() };
-        for Requirement { heads, cell } in requirements {
+        let mut row = |heads: [String; 3], cell: &dyn Fn(ConditionId) -> Option<Judged>| {
             let judged: Vec<Option<Judged>> = ids.iter().map(|id| cell(*id)).collect();
             let is_outside = judged.iter().map(|cell| cell.as_ref().is_some_and(|(_, is_outside)| *is_outside));
             overview.outside.push([false; HEADS.len()].into_iter().chain(is_outside).collect());
             let cells = judged.into_iter().map(|cell| cell.map_or_else(|| "-".to_owned(), |(text, _)| text));
             overview.table.row(heads.into_iter().chain(cells));
-        }
-        overview
-    }
-
-    /// Bandwidth and phase delay of a response that some model has one of.
-    fn of_bandwidth<'a>(&'a self, pair: Pair, dataset: &Dataset, limits: &OverviewLimits) -> Vec<Requirement<'a>> {
-        let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-        if !self.bandwidth.iter().any(|of| of.pair == pair && has_number(of)) {
-            return Vec::new();
-        }
-        let both = move |id: ConditionId, value: fn(&BandwidthFinding) -> Option<f64>| {
-            let of = |role| self.bandwidth_of(id, pair, role).and_then(value);
-            of(RequirementRole::Corrected).zip(of(RequirementRole::Identified))
-        };
-        let name = dataset.pair_name(pair);
-        let OverviewLimits { bandwidth, phase_delay_s, .. } = *limits;
-        let of_bandwidth = move |id| {
-            let (corrected, identified) = both(id, |of| of.omega_bw_rad_s)?;
-            let change = corrected / identified - 1.0;
-            Some((signed(100.0 * change), change.abs() > bandwidth))
-        };
-        let of_delay = move |id| {
-            let (corrected, identified) = both(id, |of| of.phase_delay_s)?;
-            let change_s = corrected - identified;
-            Some((signed(s_to_ms(change_s)), change_s.abs() > phase_delay_s))
         };
         let about = |value: f64| format!("\u{b1}{}", limit(value));
-        vec![
-            Requirement::new(format!("{name}: bandwidth"), ("%", about(100.0 * bandwidth)), of_bandwidth),
-            Requirement::new(format!("{name}: phase delay"), ("ms", about(s_to_ms(phase_delay_s))), of_delay),
-        ]
+        let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+        let is_known = |pair: &Pair| self.bandwidth.iter().any(|of| of.pair == *pair && has_number(of));
+        for pair in dataset.measuring_pairs().marked().filter(is_known) {
+            let both = |id: ConditionId, value: fn(&BandwidthFinding) -> Option<f64>| {
+                let of = |role| self.bandwidth_of(id, pair, role).and_then(value);
+                of(RequirementRole::Corrected).zip(of(RequirementRole::Identified))
+            };
+            let name = dataset.pair_name(pair);
+            row([format!("{name}: bandwidth"), "%".to_owned(), about(100.0 * limits.bandwidth)], &|id| {
+                let (corrected, identified) = both(id, |of| of.omega_bw_rad_s)?;
+                let change = corrected / identified - 1.0;
+                Some((signed(100.0 * change, 0), change.abs() > limits.bandwidth))
+            });
+            row([format!("{name}: phase delay"), "ms".to_owned(), about(s_to_ms(limits.phase_delay_s))], &|id| {
+                let (corrected, identified) = both(id, |of| of.phase_delay_s)?;
+                let change_s = corrected - identified;
+                Some((signed(s_to_ms(change_s), 0), change_s.abs() > limits.phase_delay_s))
+            });
+        }
+        // Of tolerances those of what is measured itself.
+        for quantity in histories.into_iter().flat_map(TimeHistories::measured_quantities) {
+            let at_least = format!("\u{2265} {}", limit(100.0 * limits.share_inside));
+            row([format!("{quantity} inside"), "% of time".to_owned(), at_least], &|id| {
+                let share = histories?.share_inside(id, RequirementRole::Corrected, quantity)?;
+                Some((percent(Some(share)), share < limits.share_inside))
+            });
+        }
+        let of_modes = ["modes beyond tolerance", "of those with a tolerance", "0"];
+        row(of_modes.map(str::to_owned), &|id| self.modes_outside(id));
+        overview
     }
 
     /// How many modes of the corrected model are beyond their tolerance; none where no mode with a tolerance is determined.
@@ -341,29 +317,9 @@ impl Requirements {
     }
 }
 
-/// Share of time inside each tolerance of what is measured itself.
-fn of_records<'a>(histories: &'a TimeHistories, limits: &OverviewLimits) -> Vec<Requirement<'a>> {
-    let least = limits.share_inside;
-    let of_quantity = |quantity: &'a str| {
-        let share = move |id| {
-            let share = histories.share_inside(id, RequirementRole::Corrected, quantity)?;
-            Some((percent(Some(share)), share < least))
-        };
-        let at_least = format!("\u{2265} {}", limit(100.0 * least));
-        Requirement::new(format!("{quantity} inside"), ("% of time", at_least), share)
-    };
-    histories.measured_quantities().map(of_quantity).collect()
-}
-
 /// A limit without the last digits of its unit.
 fn limit(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
-}
-
-/// A difference in whole numbers with its sign, as text that is sorted by value.
-fn signed(value: f64) -> String {
-    let rounded = format!("{value:+.0}");
-    if rounded[1..] == *"0" { "0".to_owned() } else { rounded.replace('-', "\u{2212}") }
 }
 
 #[cfg(test)]

@@ -136,8 +136,6 @@ pub enum Place {
     Beside,
     /// In the view of what it is about.
     Elsewhere,
-    /// Nowhere: files and command lines say it.
-    Hidden,
 }
 
 /// The value of a setting.

@@ -11,7 +11,7 @@ use gdcm_core::correction::{
 use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
 use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
-use gdcm_core::study::{Analysis, Assessed, Caution, ConditionAnalysis, lead_cautions};
+use gdcm_core::study::{Analysis, Caution, ConditionAnalysis, lead_cautions};
 
 use super::couplings::{condition_couplings, couplings};
 use super::uncertainty::{bars, net_gain_bar, uncertainty};
@@ -36,8 +36,8 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         }
         match analysis.assessment.get(&id) {
             None => {}
-            Some(Assessed::LeftOut { why }) => left_out.push(without(id, why)),
-            Some(Assessed::Nominal(changes)) => assessed.push(json!({
+            Some(Err(why)) => left_out.push(without(id, why)),
+            Some(Ok(changes)) => assessed.push(json!({
                 "id": id.0,
                 "model": condition.bundle(BundleKind::Physics)[condition.nominal()].name,
                 "dJ": rows(changes, |change| change.total()),

@@ -236,11 +236,9 @@ fn substitution_lines(
     scalar: Scalar,
 ) -> Vec<String> {
     let Some(result) = analysis.condition(condition) else { return Vec::new() };
-    let line = |(kind, model, figures): &(BundleKind, usize, _)| {
+    let line = |(kind, model, figures): &Swap| {
         let name = &result.condition.bundle(*kind)[*model].name;
-        let figures: &Option<std::sync::Arc<crate::uncertainty::Figures>> = figures;
-        let figure = figures.as_ref().and_then(|figures| figures[scalar]);
-        let words = match figure {
+        let words = match figures.as_ref().and_then(|figures| figures[scalar]) {
             Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
             Some(figure) => format!("{:.4}", figure.exp()),
             None => "none".to_owned(),

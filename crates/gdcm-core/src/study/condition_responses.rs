@@ -202,7 +202,7 @@ fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
 }
 
 /// Responses of every model of a condition on a grid for drawing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct ConditionCurves {
     /// The condition: it names the models in whose order the responses are.
     pub condition: Arc<Condition>,
@@ -212,12 +212,9 @@ pub struct ConditionCurves {
     pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    coupled: CoupledCurves,
+    /// Responses with couplings that were drawn last, with what they are of.
+    coupled: Mutex<Vec<CoupledCurve>>,
 }
-
-/// Responses with couplings that were drawn last, with what they are of: computed from the others, they make no two curves different.
-#[derive(Debug, Default)]
-struct CoupledCurves(Mutex<Vec<CoupledCurve>>);
 
 /// The response of one physics model with couplings.
 #[derive(Debug)]
@@ -227,22 +224,10 @@ struct CoupledCurve {
     response: Arc<FrequencyResponse>,
 }
 
-impl Clone for CoupledCurves {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl PartialEq for CoupledCurves {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
 impl ConditionCurves {
     pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
         let ConditionResponses { physics, identified, .. } = responses;
-        Self { condition, grid, physics, identified, coupled: CoupledCurves::default() }
+        Self { condition, grid, physics, identified, coupled: Mutex::default() }
     }
 
     /// `H~` of a physics model under the couplings of a result; `H` without couplings.
@@ -250,7 +235,7 @@ impl ConditionCurves {
         /// Those of a result and of a variant, each of a representative now and before.
         const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else { return Arc::clone(&self.physics[model]) };
-        let mut kept = self.coupled.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
         let is_of = |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
         if let Some(of) = kept.iter().find(is_of) {
             return Arc::clone(&of.response);

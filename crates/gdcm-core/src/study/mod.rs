@@ -89,11 +89,6 @@ impl BundleChoice {
         self.rejected.remove(name);
         self.reasons.remove(name);
     }
-
-    fn restore_all(&mut self) {
-        self.rejected.clear();
-        self.reasons.clear();
-    }
 }
 
 /// The engineer's choices in one condition.
@@ -118,8 +113,10 @@ impl Default for ConditionChoice {
 impl ConditionChoice {
     /// Puts every model of both bundles back.
     pub(super) fn restore_all(&mut self) {
-        self.physics.restore_all();
-        self.identified.restore_all();
+        for choice in [&mut self.physics, &mut self.identified] {
+            choice.rejected.clear();
+            choice.reasons.clear();
+        }
     }
 
     /// What of the choices an analysis depends on: not the words that they were explained with.

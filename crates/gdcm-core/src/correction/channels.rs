@@ -2,7 +2,7 @@
 
 use std::ops::Index;
 
-use crate::dataset::Pair;
+use crate::dataset::{Dataset, Pair};
 
 /// One channel: an input or an output, each with a gain and a delay of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -36,6 +36,17 @@ impl Channel {
             Channel::Output(index) => (outputs, index, "output"),
         };
         names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
+    }
+
+    /// All channels of a dataset, the inputs first.
+    pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
+        Self::all(dataset.inputs().len(), dataset.outputs().len())
+    }
+
+    /// The channel's name in a dataset.
+    pub fn name_in(self, dataset: &Dataset) -> String {
+        let (inputs, outputs) = dataset.names_of_channels();
+        self.name(&inputs, &outputs)
     }
 }
 

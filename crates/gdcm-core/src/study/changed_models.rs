@@ -95,8 +95,7 @@ impl Study {
 
     /// Turns the models of a channel, or puts them back as they were.
     pub(super) fn set_sign(&mut self, channel: Channel, of: Option<SignRole>) -> Result<(), EditRefusal> {
-        let (inputs, outputs) = (self.dataset.inputs().len(), self.dataset.outputs().len());
-        if !Channel::all(inputs, outputs).any(|known| known == channel) {
+        if !Channel::all_of(&self.dataset).any(|known| known == channel) {
             return Err(EditRefusal::NoChannel { channel });
         }
         let mut signs = self.signs.clone();
@@ -208,9 +207,8 @@ impl TurnedChannel {
 impl Study {
     /// The channels that are turned, by their names.
     pub fn turned_channels(&self) -> Vec<TurnedChannel> {
-        let (inputs, outputs) = self.dataset.names_of_channels();
         let turned = |(channel, of): (&Channel, &SignRole)| TurnedChannel {
-            channel: channel.name(&inputs, &outputs),
+            channel: channel.name_in(&self.dataset),
             side: if matches!(channel, Channel::Input(_)) { ChannelSide::Input } else { ChannelSide::Output },
             of: *of,
         };

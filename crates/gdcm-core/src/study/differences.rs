@@ -35,13 +35,13 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
     let mut differences: Vec<DecisionDifference> = changed.collect();
     differences.extend(pair_differences(before, (&a.constrained, &b.constrained), ["held", "free"]));
     differences.extend(pair_differences(before, (&a.ignored, &b.ignored), ["ignored", "fitted"]));
-    let (inputs, outputs) = before.dataset.names_of_channels();
-    let channels = Channel::all(inputs.len(), outputs.len());
-    for channel in channels.filter(|channel| before.signs.get(channel) != after.signs.get(channel)) {
+    for channel in
+        Channel::all_of(&before.dataset).filter(|channel| before.signs.get(channel) != after.signs.get(channel))
+    {
         let sign = |of: &Study| {
             of.signs.get(&channel).map_or("as in the file".to_owned(), |of| format!("{} turned", of.models()))
         };
-        let what = format!("sign of {}", channel.name(&inputs, &outputs));
+        let what = format!("sign of {}", channel.name_in(&before.dataset));
         differences.push(DecisionDifference::new(what, sign(before), sign(after)));
     }
     for condition in before.dataset.conditions() {

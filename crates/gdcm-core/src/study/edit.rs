@@ -240,8 +240,7 @@ impl Edit {
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::SetSign { channel, of } => {
-                let (inputs, outputs) = study.dataset.names_of_channels();
-                let name = channel.name(&inputs, &outputs);
+                let name = channel.name_in(&study.dataset);
                 of.map_or_else(|| format!("turn {name} back"), |of| format!("turn {name} ({})", of.word()))
             }
             Edit::TakeModels(taken) => match taken.as_slice() {

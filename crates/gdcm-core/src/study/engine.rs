@@ -318,7 +318,6 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     let leads = in_schedule(study, outcomes)
         .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
-    let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
     let caution = |channel: Channel| {
         let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.taus_s[channel])).collect();
         let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
@@ -330,5 +329,5 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
         (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
-    Channel::all(inputs, outputs).filter_map(caution).collect()
+    Channel::all_of(&study.dataset).filter_map(caution).collect()
 }

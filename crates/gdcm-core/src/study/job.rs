@@ -108,8 +108,15 @@ impl Job for TogglesJob {
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let toggles = Toggles::of(&self.condition, &|| progress.cancelled());
-        if progress.cancelled() { Err(Cancelled) } else { Ok(toggles) }
+        // The table is a hint, not a result.
+        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
+        let ConditionAnalysis { gain_problem, gains, delay_problem, delays, .. } = &self.condition;
+        let gains = toggles(gain_problem, gains, budget, &|| progress.cancelled());
+        let delays = toggles(delay_problem, delays, budget, &|| progress.cancelled());
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(gains.ok().zip(delays.ok()).map(|(gains, delays)| Toggles { gains, delays }))
     }
 }
 
@@ -262,15 +269,6 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Solves a condition with every response toggled in turn; `None` where `stop` said so first, or a problem has no answer.
-    pub fn of(condition: &ConditionAnalysis, stop: &dyn Fn() -> bool) -> Option<Self> {
-        // The table is a hint, not a result.
-        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
-        let gains = toggles(&condition.gain_problem, &condition.gains, budget, stop).ok()?;
-        let delays = toggles(&condition.delay_problem, &condition.delays, budget, stop).ok()?;
-        (!stop()).then_some(Self { gains, delays })
-    }
-
     /// The toggles of one response: of its gain and of its delay.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);

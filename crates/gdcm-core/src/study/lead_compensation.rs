@@ -71,7 +71,7 @@ const NOTHING_S: f64 = 2e-3;
 /// it: "65 ± 4 ms" (M13).
 pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
     let Some(compensated) = &result.compensated else { return Vec::new() };
-    let (inputs, outputs) = study.dataset.names_of_channels();
+    let name = |channel: Channel| channel.name_in(&study.dataset);
     let price = LeadPrice::of(&compensated.leads);
     let half_ms = |pair: Pair| {
         let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
@@ -84,14 +84,14 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         let part = |channel: Channel| {
             let tau_s = compensated.leads.taus_s[channel];
             let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
-            format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
+            format!("{sign}{} on {}", ms(tau_s), name(channel))
         };
         let price = price.as_ref().and_then(|price| price.pair_words(pair)).map(|words| format!("; {words}"));
         let price = price.unwrap_or_default();
         Some(format!(
             "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
-            output.name(&inputs, &outputs),
-            input.name(&inputs, &outputs),
+            name(output),
+            name(input),
             ms(wanted_s),
             half_ms(pair).unwrap_or_default(),
             if wanted_s < 0.0 { "lead" } else { "delay" },
@@ -101,11 +101,10 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     };
     let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
     let replaced = filters().map(|(channel, filter)| {
-        let name = channel.name(&inputs, &outputs);
         let at_above = price.as_ref().map(|price| {
             format!("; {} dB at {} rad/s", signed(price.gains_db[channel], 1), number(price.above_rad_s()))
         });
-        format!("{name}: {}{}", servo_words(filter), at_above.unwrap_or_default())
+        format!("{}: {}{}", name(channel), servo_words(filter), at_above.unwrap_or_default())
     });
     result.held().marked().filter_map(wants).chain(replaced).chain(lead_limit_words(result)).collect()
 }

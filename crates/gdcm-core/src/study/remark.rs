@@ -95,9 +95,8 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
         ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
     });
-    let (inputs, outputs) = study.dataset.names_of_channels();
     let turned = study.signs.iter().map(|(channel, of)| {
-        let (name, of) = (channel.name(&inputs, &outputs), of.models());
+        let (name, of) = (channel.name_in(&study.dataset), of.models());
         let text = format!("{name} of {of} is turned: its sign is not that of the file.");
         Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
     });

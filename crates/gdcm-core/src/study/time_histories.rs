@@ -391,6 +391,8 @@ impl<'a> Comparer<'a> {
         let rms = RmsCost::of(&validation.windows, self.outputs);
         let moved = self.moved_input(segments);
         let rows = self.rows.iter().map(|row| self.against(row, &validation.windows, moved));
+        let theil = self.outputs.iter().zip(&validation.theil);
+        let theil = theil.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?)));
         let length_s = |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
         Ok(HistoryFinding {
             condition: result.condition.id(),
@@ -409,14 +411,9 @@ impl<'a> Comparer<'a> {
                 .flat_map(|cost| cost.left_out)
                 .map(|at| self.outputs[at].name.clone())
                 .collect(),
-            theil: self.theil(&validation),
+            theil: theil.collect(),
             tolerances: rows.collect::<Result<_, _>>()?,
         })
-    }
-
-    fn theil(&self, validation: &Validation) -> BTreeMap<String, f64> {
-        let named = self.outputs.iter().zip(&validation.theil);
-        named.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?))).collect()
     }
 
     /// One row of the table over all windows of a record.

@@ -229,8 +229,7 @@ pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt:
     let schedule = analysis.schedule.as_ref().ok()?;
     let regression = schedule.gains.get(channel)?;
     let value = schedule.at(airspeed_kt).gain(channel);
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-    let name = format!("k_{}", channel.name(&inputs, &outputs));
+    let name = format!("k_{}", channel.name_in(&analysis.study.dataset));
     let symbol = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => format!("ln {name}"),
         ScheduledQuantity::Gain => name.clone(),

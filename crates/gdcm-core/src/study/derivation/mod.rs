@@ -134,8 +134,7 @@ impl<'a> Context<'a> {
 
     /// "LON".
     fn channel(&self, channel: Channel) -> String {
-        let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-        channel.name(&inputs, &outputs)
+        channel.name_in(&self.analysis.study.dataset)
     }
 
     /// "what of whom, condition 3".

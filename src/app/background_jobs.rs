@@ -271,7 +271,7 @@ fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
 fn curves_job(state: &State) -> CurvesJob {
     let dataset = Arc::clone(&state.study.dataset);
     let grid = (curves_band(&state.study.settings), CURVE_POINTS);
-    CurvesJob { dataset, condition: state.condition().id(), grid }
+    CurvesJob { dataset: dataset.into(), condition: state.condition().id(), grid }
 }
 
 /// The costs of holding and freeing, of the condition shown.
@@ -299,5 +299,5 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis().filter(|_| !results.is_behind() && (results.is_painted || results.uncertainty.is_some()))?;
-    results.analysis.clone().map(|analysis| UncertaintyJob { analysis })
+    results.analysis.clone().map(|analysis| UncertaintyJob { analysis: analysis.into() })
 }

@@ -6,7 +6,6 @@ use egui::{
 };
 
 use gdcm_core::dataset::{BundleKind, Condition};
-use gdcm_core::study::Assessed;
 
 use super::command_table::command_table;
 use super::controls::elided;
@@ -357,11 +356,7 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
 /// Why the condition shown is left out of the assessment, or what the data are.
 fn standing_remark(state: &State) -> String {
     let assessed = state.analysis().and_then(|analysis| analysis.assessment.get(&state.condition().id()));
-    let left_out = assessed.and_then(|assessed| match assessed {
-        Assessed::LeftOut { why } => Some(why),
-        Assessed::Nominal(_) => None,
-    });
-    match left_out {
+    match assessed.and_then(|assessed| assessed.as_ref().err()) {
         Some(why) => format!("condition {} is left out of the assessment: {why}", state.condition().id()),
         None => state.condition().flight_state().name.clone(),
     }

@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use gdcm_core::dataset::{BundleKind, ModelId, Pair};
-use gdcm_core::study::{Edit, Kind, OfferedModels, Place, SETTINGS, Value};
+use gdcm_core::study::{Edit, Kind, OfferedModels, SETTINGS, Value};
 use gdcm_files::figure::FigureFormat;
 
 use super::assembling::AssemblingCommand;
@@ -350,7 +350,7 @@ fn steps(state: &State) -> [Entry; 4] {
 /// Every choice of every setting, and the way to every field of one.
 fn setting_entries(state: &State) -> Vec<Entry> {
     let mut entries = Vec::new();
-    for setting in SETTINGS.into_iter().filter(|setting| setting.control.place != Place::Hidden) {
+    for setting in SETTINGS {
         let mut field = |what: String, label| {
             let name = format!("Set the {what} ({})…", setting.option.trim_start_matches('-'));
             entries.push(Entry::new(name, "Goes to its field", Command::FocusField(label)));

@@ -3,7 +3,7 @@
 
 use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::fidelity::Cost;
-use gdcm_core::study::{Assessed, CouplingCorrection};
+use gdcm_core::study::CouplingCorrection;
 
 use super::State;
 
@@ -80,7 +80,7 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.mapped_cost == MappedCost::Scheduled {
-        let Assessed::Nominal(costs) = analysis.assessment.get(&condition)? else { return None };
+        let Ok(costs) = analysis.assessment.get(&condition)? else { return None };
         return costs[pair].map(|change| change.corrected);
     }
     let result = analysis.condition(condition)?;

@@ -97,7 +97,7 @@ fn lines_of(state: &State) -> Vec<Vec<&'static Setting>> {
     let mut lines: Vec<Vec<&'static Setting>> = Vec::new();
     for setting in SETTINGS.iter().filter(|setting| (setting.control.applies)(&state.study)) {
         match (setting.control.place, lines.last_mut()) {
-            (Place::Elsewhere | Place::Hidden, _) => {}
+            (Place::Elsewhere, _) => {}
             (Place::Beside, Some(line)) => line.push(setting),
             _ => lines.push(vec![setting]),
         }

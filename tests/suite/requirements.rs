@@ -266,9 +266,9 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let job = RecordHistoryJob {
         tolerances: analysis.study.requirements.tolerances.clone(),
-        analysis: std::sync::Arc::new(analysis),
+        analysis: std::sync::Arc::new(analysis).into(),
         condition: gdcm_core::dataset::ConditionId(3),
-        record: HistoryRecord { flight, held_out: false },
+        record: HistoryRecord { flight: flight.into(), held_out: false },
         preparation: gdcm_core::identification::Preparation::of(&inputs, &outputs),
     };
     let mut executor: Box<dyn Executor> = Box::new(Sequential);

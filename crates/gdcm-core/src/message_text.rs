@@ -21,18 +21,15 @@ pub fn sanitized_path(path: &Path) -> String {
     sanitized(&path.to_string_lossy())
 }
 
-/// Whether a character is no part of a plain text: a control character, or one that is not seen.
+/// Whether a character is no part of a plain text: a control character, or one that has no shape of its own, but turns the writing
+/// direction, joins or parts letters, ends a line or a paragraph.
 pub fn is_unprintable(character: char) -> bool {
-    character.is_control() || is_invisible(character)
-}
-
-/// Whether a character has no shape of its own: it turns the writing direction, joins or parts letters, ends a line or a paragraph.
-fn is_invisible(character: char) -> bool {
-    matches!(
+    let is_invisible = matches!(
         character,
         '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
             | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}'
-    )
+    );
+    is_invisible || character.is_control()
 }
 
 /// A plain text in quotation marks, no longer than a message can bear.

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
+use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
 /// The numbers that a type of Rust's whole numbers takes.
@@ -30,7 +31,11 @@ pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Resu
 
 /// The same, or null; for a key that may be absent, with `#[serde(default)]`.
 pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    deserializer.deserialize_option(WholeOrNone(PhantomData))
+    /// A whole number, as an option takes it.
+    #[derive(Deserialize)]
+    #[serde(bound = "T: WholeNumber", transparent)]
+    struct Held<T>(#[serde(deserialize_with = "whole")] T);
+    Ok(Option::deserialize(deserializer)?.map(|Held(number)| number))
 }
 
 struct Whole<T>(PhantomData<T>);
@@ -62,28 +67,8 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 }
 
-struct WholeOrNone<T>(PhantomData<T>);
-
-impl<'de, T: WholeNumber> Visitor<'de> for WholeOrNone<T> {
-    type Value = Option<T>;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(T::EXPECTED)
-    }
-
-    fn visit_none<E: Error>(self) -> Result<Option<T>, E> {
-        Ok(None)
-    }
-
-    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<Option<T>, D::Error> {
-        whole(deserializer).map(Some)
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use serde::Deserialize;
-
     use super::*;
 
     #[derive(Debug, Deserialize)]

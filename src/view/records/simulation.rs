@@ -107,7 +107,10 @@ fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
     let preparation = records.preparation();
     let of = |model: &TimeModel| {
         let (record, preparation) = (Arc::clone(record), preparation.clone());
-        Some((*model, SimulationJob { record, preparation, model: state_space(state, records, *model)? }))
+        Some((
+            *model,
+            SimulationJob { record: record.into(), preparation, model: state_space(state, records, *model)? },
+        ))
     };
     state.records.time_models.iter().filter_map(of).collect()
 }

@@ -3,7 +3,7 @@
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 use gdcm_core::dataset::{ConditionId, Pair, PairTable};
 use gdcm_core::schedule::CostChange;
-use gdcm_core::study::{Analysis, Assessed, Edit, Table, Variant, VariantJob, decision_differences};
+use gdcm_core::study::{Analysis, Edit, Table, Variant, VariantJob, decision_differences};
 use gdcm_core::units::signed;
 
 use super::net_gain::net_gain_pairs;
@@ -155,14 +155,12 @@ fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<Strin
 /// Mean change of J of the on-axis responses of the nominal models under the schedule, over the conditions assessed.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
-    let assessed = analysis.assessment.values().filter_map(|assessed| match assessed {
-        Assessed::Nominal(changes) => Some(changes),
-        Assessed::LeftOut { .. } => None,
-    });
-    let change = |changes: &PairTable<Option<CostChange>>| {
-        measuring.marked().filter_map(|pair| Some(changes[pair]?.total())).collect::<Vec<f64>>()
-    };
-    let changes: Vec<f64> = assessed.flat_map(change).collect();
+    let changes: Vec<f64> = analysis
+        .assessment
+        .values()
+        .flatten()
+        .flat_map(|changes| measuring.marked().filter_map(|pair| Some(changes[pair]?.total())))
+        .collect();
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;
     mean.is_finite().then(|| signed(mean, 2))
 }

@@ -33,14 +33,20 @@ fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let condition = state.condition().id();
     let records = state.records.conditions.get(&condition).filter(|_| !state.display.shows_test)?;
     let row = records.rows.get(records.chosen)?;
-    let record = HistoryRecord { flight: Arc::clone(row.used_flight()?), held_out: row.guess.held_out };
+    let record = HistoryRecord { flight: Arc::clone(row.used_flight()?).into(), held_out: row.guess.held_out };
     let tolerances = state.study.requirements.tolerances.clone();
-    Some(RecordHistoryJob { analysis, condition, record, preparation: records.preparation(), tolerances })
+    Some(RecordHistoryJob {
+        analysis: analysis.into(),
+        condition,
+        record,
+        preparation: records.preparation(),
+        tolerances,
+    })
 }
 
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     let (condition, input) = (state.condition().id(), state.display.pair.input);
-    Some(TestAnswersJob { analysis: current(state)?, condition, input, test: state.study.requirements.test })
+    Some(TestAnswersJob { analysis: current(state)?.into(), condition, input, test: state.study.requirements.test })
 }
 
 fn current(state: &State) -> Option<Arc<Analysis>> {

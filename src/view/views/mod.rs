@@ -154,7 +154,7 @@ impl View {
                 tools_width: 180.0,
                 needs: |state| {
                     let condition = state.dataset().condition(state.condition().id());
-                    condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of) })).into_iter().collect()
+                    condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of).into() })).into_iter().collect()
                 },
                 figure: Some(FigureKind::Poles),
                 ..ViewKind::PLAIN
@@ -207,7 +207,7 @@ impl View {
                 needs: |state| {
                     let analysis = state.results.analysis.as_ref().filter(|_| state.analysis().is_some());
                     let choice = assessment_choice(state);
-                    let job = analysis.map(|analysis| AssessmentJob { analysis: Arc::clone(analysis), choice });
+                    let job = analysis.map(|analysis| AssessmentJob { analysis: Arc::clone(analysis).into(), choice });
                     job.map(Need::Assessment).into_iter().collect()
                 },
                 figure: Some(FigureKind::Assessment),

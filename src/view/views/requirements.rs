@@ -69,8 +69,8 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
     Some(RequirementsJob {
-        analysis,
-        uncertainty: state.uncertainty().cloned(),
+        analysis: analysis.into(),
+        uncertainty: state.uncertainty().cloned().map(Into::into),
         settings: Arc::clone(&state.study.requirements),
         known: known_poles(state),
     })
@@ -108,7 +108,7 @@ fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
     let records = all_records(state);
     let tolerances = state.study.requirements.tolerances.clone();
-    (!records.is_empty()).then_some(TimeHistoriesJob { analysis, records, tolerances })
+    (!records.is_empty()).then_some(TimeHistoriesJob { analysis: analysis.into(), records, tolerances })
 }
 
 /// The page that is chosen, below what has to be known of all of them.

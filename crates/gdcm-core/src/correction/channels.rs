@@ -4,7 +4,7 @@
 use std::ops::Index;
 
 use super::ChannelLeads;
-use crate::dataset::Pair;
+use crate::dataset::{Dataset, Pair};
 use crate::response::{GainDelay, LeadFilter};
 
 /// One channel: an input or an output, each with a gain and a delay of its own.
@@ -39,6 +39,17 @@ impl Channel {
             Channel::Output(index) => (outputs, index, "output"),
         };
         names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
+    }
+
+    /// All channels of a dataset, the inputs first.
+    pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
+        Self::all(dataset.inputs().len(), dataset.outputs().len())
+    }
+
+    /// The channel's name in a dataset.
+    pub fn name_in(self, dataset: &Dataset) -> String {
+        let (inputs, outputs) = dataset.names_of_channels();
+        self.name(&inputs, &outputs)
     }
 }
 
@@ -132,6 +143,23 @@ pub struct ChannelCorrection {
 }
 
 impl ChannelCorrection {
+    /// These gains with these delays \[s\].
+    pub fn of_delays(gains: Channels<f64>, delays_s: Channels<f64>) -> Self {
+        Self {
+            input_gains: gains.inputs,
+            output_gains: gains.outputs,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
+            leads: None,
+        }
+    }
+
+    /// These gains with signed delays (M15).
+    pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
+        let delays_s = leads.delays_s();
+        Self { leads: Some(leads), ..Self::of_delays(gains, delays_s) }
+    }
+
     /// Net gain of a response, `k_o k_i` (M11).
     pub fn net_gain(&self, pair: Pair) -> f64 {
         self.output_gains[pair.output] * self.input_gains[pair.input]

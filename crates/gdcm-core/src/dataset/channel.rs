@@ -249,6 +249,14 @@ pub enum BundleKind {
 impl BundleKind {
     /// Both bundles, the physics models first.
     pub const BOTH: [BundleKind; 2] = [BundleKind::Physics, BundleKind::Identified];
+
+    /// Which of two things is of this bundle.
+    pub fn pick<T>(self, physics: T, identified: T) -> T {
+        match self {
+            BundleKind::Physics => physics,
+            BundleKind::Identified => identified,
+        }
+    }
 }
 
 impl fmt::Display for BundleKind {

@@ -142,6 +142,11 @@ impl Dataset {
         &self.conditions
     }
 
+    /// The ids of the conditions, in file order.
+    pub fn ids(&self) -> impl Iterator<Item = ConditionId> {
+        self.conditions.iter().map(|condition| condition.id())
+    }
+
     /// One condition.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions.iter().find(|condition| condition.id() == id)

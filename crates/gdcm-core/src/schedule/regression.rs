@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{LeadSchedule, Schedule, ScheduleKind, ScheduledQuantity};
 use crate::correction::Channel;
+
+use super::*;
 
 /// The airspeeds of the scheduled conditions, centred and scaled: `v = (V - mean V) / (half the range of V)` (M11).
 #[derive(Clone, Debug, PartialEq)]

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::ScheduleError;
 use crate::correction::Channels;
 use crate::dataset::FlightState;
+
+use super::*;
 
 /// A column of which less than this is left beside the others is a combination of them.
 const DEPENDENT: f64 = 1e-9;

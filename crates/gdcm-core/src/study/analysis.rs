@@ -1,33 +1,13 @@
 //! The result of a whole study.
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use crate::correction::{ChannelCorrection, GainBounds, Problem, ProblemError, Solution};
-use crate::couplings::CouplingError;
-use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
 use crate::fidelity::{Discontinuity, Representative};
-use crate::schedule::{
-    CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError, compare_forms, compare_lead_degrees,
-};
-use crate::uncertainty::Scalar;
+use crate::schedule::{FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees};
 
-use super::{
-    BundleMetrics, Caution, Comparison, ConventionDoubt, CoupledCondition, CouplingsAssessment, FittedCouplings,
-    LeadCompensated, LeadOffer, Remark, Study, Uncertainty, no_couplings, scheduled_points,
-};
+use super::*;
 
-/// The nominal model of a condition under the scheduled correction (M12).
-#[derive(Clone, Debug, PartialEq)]
-pub enum Assessed {
-    /// J of every response before and after.
-    Nominal(PairTable<Option<CostChange>>),
-    /// The condition is left out, and why.
-    LeftOut {
-        /// The reason in words.
-        why: String,
-    },
-}
+/// J of every response of the nominal model of a condition before and after the scheduled correction (M12), or in words why the
+/// condition is left out.
+pub type Assessed = Result<PairTable<Option<CostChange>>, String>;
 
 /// Everything the analysis says of a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,6 +38,12 @@ impl Analysis {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
+    /// The same, or in words why there is none.
+    pub(super) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
+        let outcome = self.conditions.get(&id).ok_or("it was not analysed")?;
+        outcome.as_ref().map_err(ToString::to_string)
+    }
+
     /// The couplings that every physics model has gone through, where there are any.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
@@ -83,8 +69,11 @@ impl Analysis {
 
     /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
-        let all = self.study.dataset.conditions().iter().map(|condition| condition.id());
-        all.filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some()).collect()
+        self.study
+            .dataset
+            .ids()
+            .filter(|id| self.study.choice(*id).is_in_schedule() && self.condition(*id).is_some())
+            .collect()
     }
 
     /// The schedule of the chosen conditions without one of them.
@@ -205,15 +194,17 @@ impl ConditionAnalysis {
 
     /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
-        match kind {
-            BundleKind::Physics => &self.comparison.physics,
-            BundleKind::Identified => &self.comparison.identified,
-        }
+        kind.pick(&self.comparison.physics, &self.comparison.identified)
     }
 
-    /// Name of the representative of a bundle.
+    /// The model that represents a bundle.
+    pub fn representative_model(&self, kind: BundleKind) -> &Model {
+        &self.condition.bundle(kind)[self.representative(kind).model]
+    }
+
+    /// Its name.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
-        &self.condition.bundle(kind)[self.representative(kind).model].name
+        &self.representative_model(kind).name
     }
 
     /// Mean distance of a model to the other kept ones, where it has one.

@@ -1,16 +1,9 @@
 //! What a correction is worth, response by response and condition by condition, for the model and the correction that are asked
 //! for (M12, Figures 8 to 19).
 
-use std::sync::Arc;
+use crate::schedule::corrected_cost;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
-use crate::fidelity::CostAverage;
-use crate::response::GainDelay;
-use crate::schedule::{CostChange, ScheduleError, corrected_cost};
-use crate::units::{number, signed};
-
-use super::{Analysis, Cancelled, ConditionAnalysis, Job, ModelMismatch, Progress, Settings, in_turn};
+use super::*;
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -133,7 +126,7 @@ impl AssessmentTable {
     /// The assessment of an analysis, from the mismatches that it keeps: two averages over frequency for each response.
     pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self { choice, conditions: Vec::new(), left_out: Vec::new() };
-        analysis.study.dataset.conditions().iter().for_each(|condition| table.add(analysis, condition.id()));
+        analysis.study.dataset.ids().for_each(|id| table.add(analysis, id));
         table
     }
 
@@ -180,8 +173,8 @@ impl AssessmentSummary {
 /// responses, mean ΔJ −12.3; the others: better in 40 of 45, mean ΔJ −15.0". None where none is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let is_held_out = |id: ConditionId| analysis.study.choice(id).held_out;
-    let ids = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
-    let held_out: Vec<String> = ids.filter(|id| is_held_out(*id)).map(|id| id.to_string()).collect();
+    let held_out = analysis.study.dataset.ids().filter(|id| is_held_out(*id));
+    let held_out: Vec<String> = held_out.map(|id| id.to_string()).collect();
     if held_out.is_empty() {
         return None;
     }
@@ -207,14 +200,14 @@ pub(super) fn assessed(
     id: ConditionId,
     choice: AssessmentChoice,
 ) -> Result<AssessedCondition, String> {
-    let outcome = analysis.conditions.get(&id).ok_or_else(|| "it was not analysed".to_owned())?;
-    let condition = analysis.study.dataset.condition(id).ok_or_else(|| "it was not analysed".to_owned())?;
+    let result = analysis.result(id);
+    let condition = analysis.study.dataset.condition(id).ok_or("it was not analysed")?;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
     let by_nominal = choice.model == AssessedModel::Nominal;
     if by_nominal && analysis.study.choice(id).physics.rejected.contains(nominal) {
         return Err("the nominal model is rejected".to_owned());
     }
-    let result = outcome.as_ref().map_err(ToString::to_string)?;
+    let result = result?;
     let airspeed_kt = condition.flight_state().airspeed_kt;
     let correction = choice.correction.of(analysis, result).map_err(|error| error.to_string())?;
     let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
@@ -257,18 +250,12 @@ fn missing(
 }
 
 /// An assessment that may take longer than a frame: of hundreds of conditions.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentJob {
     /// The analysis that is assessed.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// What is assessed, and how.
     pub choice: AssessmentChoice,
-}
-
-impl PartialEq for AssessmentJob {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.analysis, &other.analysis) && self.choice == other.choice
-    }
 }
 
 impl Job for AssessmentJob {

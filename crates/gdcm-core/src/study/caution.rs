@@ -1,14 +1,9 @@
 //! What the engineer has to know about a result that could be had all the same.
 
-use std::fmt;
-use std::sync::Arc;
-
-use crate::dataset::{BundleKind, Condition, Dynamics, Pair};
 use crate::fidelity::{DiscontinuityError, MeasuredPairs};
-use crate::response::{FrequencyResponse, LargeEntry};
-use crate::units::number;
+use crate::response::LargeEntry;
 
-use super::BundleChoice;
+use super::*;
 
 /// A caution that travels with a result.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,10 +16,11 @@
 //!
 //! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
-use crate::dataset::{Band, BundleKind, ChannelSide, Condition, Dataset, Dynamics, Pair};
+use crate::dataset::ChannelSide;
 use crate::identification::{ResponseEstimate, Signal, TRUSTED_COHERENCE};
-use crate::response::{FrequencyGrid, FrequencyResponse, median, unwrap};
-use crate::units::{s_to_ms, telling};
+use crate::response::unwrap;
+
+use super::*;
 
 /// Share of the points in the band at which a response is coherent, at least.
 const LEAST_SHOWN: f64 = 0.5;

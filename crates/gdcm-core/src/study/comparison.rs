@@ -1,20 +1,13 @@
 //! The stages of a condition's analysis that do not depend on constraints, alpha or bounds.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
-
-use crate::correction::{Delta, delta_gains, mismatch_table};
-use crate::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair, PairTable};
+use crate::correction::mismatch_table;
 use crate::fidelity::{
-    BundleDistance, CoherenceWeights, ComparedModel, Cost, CostAverage, Discontinuity, DiscontinuityError, FitError,
-    MeasuredPairs, Mismatch, Representative, distances_from,
+    BundleDistance, CoherenceWeights, ComparedModel, Discontinuity, DiscontinuityError, FitError, MeasuredPairs,
+    Representative, distances_from,
 };
-use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
+use crate::response::PolarResponse;
 
-use super::{
-    BundleChoice, BundleModel, Cancelled, Caution, ConditionChoice, ConditionFailure, ConditionResponses, Execution,
-    Study, Undefined, caution,
-};
+use super::*;
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,10 +49,7 @@ impl BundleMetrics {
 
     /// Distances of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleDistance {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

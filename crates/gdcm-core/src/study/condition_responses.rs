@@ -1,13 +1,12 @@
 //! Responses of every model of a condition, each kept by what it is computed from.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 use crate::correction::ABOVE_BAND;
-use crate::dataset::{Band, BundleKind, Condition, ContentHash, Model};
-use crate::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
+use crate::dataset::ContentHash;
 
-use super::{Cancelled, ConditionAnalysis, Execution, FittedCouplings, Memo, PhaseCorrection, Settings};
+use super::*;
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -80,10 +79,7 @@ impl ConditionResponses {
 
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 
@@ -211,7 +207,7 @@ fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
 }
 
 /// Responses of every model of a condition on a grid for drawing.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug)]
 pub struct ConditionCurves {
     /// The condition: it names the models in whose order the responses are.
     pub condition: Arc<Condition>,
@@ -221,12 +217,9 @@ pub struct ConditionCurves {
     pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    coupled: CoupledCurves,
+    /// Responses with couplings that were drawn last, with what they are of.
+    coupled: Mutex<Vec<CoupledCurve>>,
 }
-
-/// Responses with couplings that were drawn last, with what they are of: computed from the others, they make no two curves different.
-#[derive(Debug, Default)]
-struct CoupledCurves(Mutex<Vec<CoupledCurve>>);
 
 /// The response of one physics model with couplings.
 #[derive(Debug)]
@@ -236,22 +229,10 @@ struct CoupledCurve {
     response: Arc<FrequencyResponse>,
 }
 
-impl Clone for CoupledCurves {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl PartialEq for CoupledCurves {
-    fn eq(&self, _other: &Self) -> bool {
-        true
-    }
-}
-
 impl ConditionCurves {
     pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
         let ConditionResponses { physics, identified, .. } = responses;
-        Self { condition, grid, physics, identified, coupled: CoupledCurves::default() }
+        Self { condition, grid, physics, identified, coupled: Mutex::default() }
     }
 
     /// `H~` of a physics model under the couplings of a result; `H` without couplings.
@@ -259,7 +240,7 @@ impl ConditionCurves {
         /// Those of a result and of a variant, each of a representative now and before.
         const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else { return Arc::clone(&self.physics[model]) };
-        let mut kept = self.coupled.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
         let is_of = |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
         if let Some(of) = kept.iter().find(is_of) {
             return Arc::clone(&of.response);
@@ -273,10 +254,7 @@ impl ConditionCurves {
 
     /// The responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

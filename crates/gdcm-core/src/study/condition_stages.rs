@@ -1,22 +1,9 @@
 //! The stages of one condition, each kept while what it depends on stays the same.
 
-use std::sync::Arc;
+use crate::correction::{Bounds, DELAY_AGREEMENT_S, LeadDesign, delay_upper_s, gain_bounds, solve};
+use crate::schedule::assess;
 
-use crate::correction::{
-    Bounds, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, Delta, GainSource, LeadDesign, Problem, ProblemError,
-    ProofBudget, Quantity, Solution, delay_upper_s, gain_bounds, solve,
-};
-use crate::dataset::{BundleKind, Condition, ConditionId, Pair, PairTable};
-use crate::fidelity::CostAverage;
-use crate::response::FrequencyGrid;
-use crate::schedule::{CostChange, assess};
-
-use super::{
-    BundleMetrics, Cancelled, Caution, Comparison, ConditionAnalysis, ConditionChoice, ConditionFailure,
-    ConditionModels, ConditionResponses, ConditionSubstitutions, CoupledCondition, CoupledResponses, CouplingSource,
-    DelayFrom, Execution, FittedCouplings, GridKey, LeadCompensated, LeadOffer, Memo, Mismatches, PhaseCorrection,
-    Purpose, Settings, Study, SubstitutedOptimum, Substituting, SubstitutionMemo,
-};
+use super::*;
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
@@ -49,6 +36,8 @@ struct Measured<'a> {
     study: &'a Study,
     grid: &'a FrequencyGrid,
     condition: Arc<Condition>,
+    /// The responses that measure distances and bounds.
+    measuring: PairTable<bool>,
     responses: ConditionResponses,
     figures: Arc<BundleMetrics>,
 }
@@ -103,8 +92,8 @@ impl ConditionStages {
     ) -> Result<Measured<'a>, Cancelled> {
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
-        let coherence = study.settings.coherence_threshold;
-        let figures_key = (grid_key, study.dataset.measuring_pairs(), coherence);
+        let (measuring, coherence) = (study.dataset.measuring_pairs(), study.settings.coherence_threshold);
+        let figures_key = (grid_key, measuring.clone(), coherence);
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
         if self.figures.holds(&figures_key) {
             execution.step(2 * model_count(&condition));
@@ -112,7 +101,7 @@ impl ConditionStages {
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
             BundleMetrics::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
         })?;
-        Ok(Measured { study, grid, condition, responses, figures })
+        Ok(Measured { study, grid, condition, measuring, responses, figures })
     }
 
     /// What the condition brings to the fit of the couplings; none where its representatives cannot be compared, or have no delays.
@@ -127,8 +116,7 @@ impl ConditionStages {
         let source = match self.plain.compare(&measured, None) {
             Err(_) => None,
             Ok(comparison) => {
-                let measuring = study.dataset.measuring_pairs();
-                let input = measured.solve_input(&measuring, &comparison);
+                let input = measured.solve_input(&comparison);
                 let delays = self.plain.delays(&input, input.lead_design().as_deref(), (proofs, execution))?.1;
                 let chosen = [comparison.physics.model, comparison.identified.model];
                 let [physics, flight] = [(BundleKind::Physics, chosen[0]), (BundleKind::Identified, chosen[1])];
@@ -213,10 +201,10 @@ impl ConditionStages {
     }
 }
 
-impl<'a> Measured<'a> {
-    fn solve_input<'b>(&'b self, measuring: &'b PairTable<bool>, comparison: &'b Comparison) -> SolveInput<'b> {
+impl Measured<'_> {
+    fn solve_input<'b>(&'b self, comparison: &'b Comparison) -> SolveInput<'b> {
         let compared = (&comparison.representative.mismatch, &comparison.delta);
-        SolveInput::new(&self.study.settings, measuring, self.grid.omega(), compared)
+        SolveInput::new(&self.study.settings, &self.measuring, self.grid.omega(), compared)
     }
 }
 
@@ -227,10 +215,11 @@ impl SolvedStages {
         measured: &Measured<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<Arc<Comparison>, ConditionFailure> {
-        let Measured { study, grid, condition, responses, figures } = measured;
+        let Measured { study, grid, condition, measuring, responses, figures } = measured;
         let settings = &study.settings;
         let choice = study.choice(condition.id());
-        let key = comparison_key(study, condition.id(), couplings);
+        let figures_key = ((settings.band, settings.points), measuring.clone(), settings.coherence_threshold);
+        let key = (figures_key, choice.of_models(), settings.cost_average, settings.gain_source, couplings.cloned());
         let comparison = self.comparison.get(key, |_| {
             let averaging = (settings.cost_average, settings.coherence_threshold);
             let comparison = Comparison::of(condition, responses, figures, grid, choice, averaging);
@@ -258,9 +247,8 @@ impl SolvedStages {
             Err(failure) => return Ok(Err(failure)),
         };
         let (settings, omega) = (&measured.study.settings, measured.grid.omega());
-        let measuring = measured.study.dataset.measuring_pairs();
         let (models, average) = (&comparison.representative, settings.cost_average);
-        let input = measured.solve_input(&measuring, &comparison);
+        let input = measured.solve_input(&comparison);
         let solved = match self.solve(&input, proofs, execution)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
@@ -297,11 +285,17 @@ impl SolvedStages {
         execution: &Execution<'_>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
         let settings = input.settings;
+        let mut held_s = held.marked().map(|pair| input.delta.band_delay_s[pair].unwrap_or_default()).peekable();
+        let is_wanted = held_s.peek().is_some() && held_s.all(|delay_s| delay_s < 0.0);
+        if settings.phase == PhaseCorrection::Lead || !is_wanted {
+            return Ok(None);
+        }
         let design = Arc::new(LeadDesign::new(settings.lead, input.omega.into()));
         let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
-        let problem = LeadOffer::problem(&input.delta.band_delay_s, held, settings.fitted(), bounds);
-        let Some(problem) = problem.filter(|_| settings.phase != PhaseCorrection::Lead) else { return Ok(None) };
-        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution);
+        // The weight decides on shares, not on what is held: it is 1 whatever delays are asked with.
+        let asked = input.delay_problem(Some(&design));
+        let problem = Problem { constrained: held.clone(), bounds, alpha: 1.0, ..asked };
+        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution.progress());
         // An offer that cannot be made is none.
         let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
         let leads = ChannelLeads::new(design, solution.channels());
@@ -317,7 +311,7 @@ impl SolvedStages {
         (proofs, execution): (ProofBudget, &Execution<'_>),
     ) -> Result<(Arc<Problem>, Solved), Cancelled> {
         let problem = Arc::new(input.delay_problem(design));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
         let delays = self.delays.get_or_fail(Arc::clone(&problem), solve)?;
         Ok((problem, delays))
     }
@@ -338,7 +332,7 @@ impl SolvedStages {
         };
         let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution);
+        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
         let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
         Ok(match (gains, delays) {
             (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
@@ -346,14 +340,6 @@ impl SolvedStages {
             (_, Err(error)) => Err(ConditionFailure::Delays(error)),
         })
     }
-}
-
-/// What the comparison of the representatives of a condition depends on.
-fn comparison_key(study: &Study, condition: ConditionId, couplings: Option<&Arc<FittedCouplings>>) -> ComparisonKey {
-    let settings = &study.settings;
-    let figures_key = ((settings.band, settings.points), study.dataset.measuring_pairs(), settings.coherence_threshold);
-    let choice = study.choice(condition).of_models();
-    (figures_key, choice, settings.cost_average, settings.gain_source, couplings.cloned())
 }
 
 /// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
@@ -422,10 +408,11 @@ impl<'a> SolveInput<'a> {
 }
 
 /// What came of one problem.
-type Solved = Result<Arc<Solution>, ProblemError>;
+pub(super) type Solved = Result<Arc<Solution>, ProblemError>;
 
-fn solved(problem: &Problem, proofs: ProofBudget, execution: &Execution<'_>) -> Result<Solved, Cancelled> {
-    match solve(problem, proofs, &|| execution.progress().cancelled()) {
+/// The optimum of a problem, proven within a budget.
+pub(super) fn solved(problem: &Problem, proofs: ProofBudget, progress: &dyn Progress) -> Result<Solved, Cancelled> {
+    match solve(problem, proofs, &|| progress.cancelled()) {
         Err(ProblemError::Stopped) => Err(Cancelled),
         solved => Ok(solved.map(Arc::new)),
     }
@@ -442,14 +429,9 @@ struct Optima {
 
 impl Optima {
     fn correction(&self) -> ChannelCorrection {
-        let leads = self.compensated.as_ref().map(|compensated| compensated.leads.clone());
-        let delays_s = leads.as_ref().map_or_else(|| self.delays.channels(), ChannelLeads::delays_s);
-        ChannelCorrection {
-            input_gains: self.gains.inputs.clone(),
-            output_gains: self.gains.outputs.clone(),
-            input_delays_s: delays_s.inputs,
-            output_delays_s: delays_s.outputs,
-            leads,
+        match &self.compensated {
+            Some(compensated) => ChannelCorrection::of_leads(self.gains.channels(), compensated.leads.clone()),
+            None => ChannelCorrection::of_delays(self.gains.channels(), self.delays.channels()),
         }
     }
 }

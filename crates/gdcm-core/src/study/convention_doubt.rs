@@ -2,13 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::correction::{Channel, delta_gains};
-use crate::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
-use crate::fidelity::Mismatch;
-use crate::response::{FrequencyGrid, median};
-use crate::units::number;
-
-use super::{Cancelled, Compared, ConditionResponses, Execution, Mismatches, Study};
+use super::*;
 
 /// Within this \[rad\] of half a turn a phase difference speaks for another sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
@@ -55,8 +49,7 @@ pub struct ConventionDoubt {
 impl ConventionDoubt {
     /// The doubt in words, with what would settle it.
     pub fn words(&self, dataset: &Dataset) -> String {
-        let (inputs, outputs) = dataset.names_of_channels();
-        let channel = self.channel.name(&inputs, &outputs);
+        let channel = self.channel.name_in(dataset);
         let pairs: Vec<String> = self.pairs.iter().map(|&pair| dataset.pair_name(pair)).collect();
         let ids: Vec<String> = self.conditions.iter().map(ToString::to_string).collect();
         let place = match self.conditions.len() {
@@ -170,27 +163,27 @@ fn other(channel: Channel, pair: Pair) -> Channel {
     if channel == output { input } else { output }
 }
 
+/// What one sample shows of a channel: the condition, the responses that show it, and whether all of the channel do.
+type Shown = (ConditionId, Vec<Pair>, bool);
+
 fn sign_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
-    let mut doubt = ConventionDoubt::of(Convention::Sign, channel);
-    for sample in samples {
+    let shown = samples.iter().map(|sample| {
         // Of the two channels of a response that one is to blame whose other responses are opposed too; the output where both are.
         let is_to_blame = |pair: Pair| {
             let (own, of_other) = (sample.opposed(channel), sample.opposed(other(channel, pair)));
             own > of_other || (own == of_other && matches!(channel, Channel::Output(_)))
         };
         let turned = sample.of_channel(channel).filter(|(pair, mismatch)| measuring[*pair] && is_turned(mismatch));
-        let turned: Vec<Pair> = turned.map(|(pair, _)| pair).filter(|pair| is_to_blame(*pair)).collect();
-        let all = !turned.is_empty() && sample.opposed(channel) == 1.0;
-        doubt.take(sample.condition, turned, all);
-    }
-    doubt.found()
+        let turned = turned.map(|(pair, _)| pair).filter(|pair| is_to_blame(*pair)).collect();
+        (sample.condition, turned, sample.opposed(channel) == 1.0)
+    });
+    ConventionDoubt::of(Convention::Sign, channel, shown)
 }
 
 fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
     let is_far = |ln_gain: f64| ln_gain.abs() > USUAL_FACTOR.ln();
-    let mut doubt = ConventionDoubt::of(Convention::Factor(1.0), channel);
     let mut ln_gains = Vec::new();
-    for sample in samples {
+    let shown = samples.iter().map(|sample| {
         // Of the two channels of a response that one is to blame whose other responses have about the same factor.
         let is_to_blame = |pair: Pair, ln_gain: f64| {
             let apart = |channel| (median(&mut sample.ln_gains(channel)) - ln_gain).abs();
@@ -199,38 +192,31 @@ fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Ch
         };
         let measured = sample.of_channel(channel).filter(|(pair, _)| measuring[*pair]);
         let far = measured.filter_map(|(pair, _)| Some((pair, sample.gains[pair]?.ln()))).filter(|of| is_far(of.1));
-        let far: Vec<(Pair, f64)> = far.filter(|(pair, ln_gain)| is_to_blame(*pair, *ln_gain)).collect();
-        ln_gains.extend(far.iter().map(|(_, ln_gain)| ln_gain));
-        let all = sample.ln_gains(channel).into_iter().all(is_far);
-        doubt.take(sample.condition, far.into_iter().map(|(pair, _)| pair).collect(), all);
-    }
+        let (pairs, gains): (Vec<Pair>, Vec<f64>) = far.filter(|(pair, ln_gain)| is_to_blame(*pair, *ln_gain)).unzip();
+        ln_gains.extend(gains);
+        (sample.condition, pairs, sample.ln_gains(channel).into_iter().all(is_far))
+    });
+    let shown: Vec<Shown> = shown.collect();
     let factor = median(&mut ln_gains);
     // A unit is one factor: responses that ask for several differ by something else.
     if ln_gains.iter().any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln()) {
         return None;
     }
-    doubt.convention = Convention::Factor(factor.exp());
-    doubt.found()
+    ConventionDoubt::of(Convention::Factor(factor.exp()), channel, shown)
 }
 
 impl ConventionDoubt {
-    fn of(convention: Convention, channel: Channel) -> Self {
-        Self { convention, channel, pairs: Vec::new(), all_responses: true, conditions: Vec::new() }
-    }
-
-    /// Takes what one condition shows.
-    fn take(&mut self, condition: ConditionId, pairs: Vec<Pair>, all: bool) {
-        if !pairs.is_empty() {
-            self.conditions.push(condition);
-            self.all_responses &= all;
-            self.pairs.extend(pairs);
-            self.pairs.sort();
-            self.pairs.dedup();
-        }
-    }
-
-    fn found(self) -> Option<Self> {
-        (!self.conditions.is_empty()).then_some(self)
+    /// The doubt that conditions show; none where none does.
+    fn of(convention: Convention, channel: Channel, shown: impl IntoIterator<Item = Shown>) -> Option<Self> {
+        let shown: Vec<Shown> = shown.into_iter().filter(|(_, pairs, _)| !pairs.is_empty()).collect();
+        let pairs: BTreeSet<Pair> = shown.iter().flat_map(|(_, pairs, _)| pairs).copied().collect();
+        (!shown.is_empty()).then(|| Self {
+            convention,
+            channel,
+            pairs: pairs.into_iter().collect(),
+            all_responses: shown.iter().all(|(.., all)| *all),
+            conditions: shown.iter().map(|(condition, ..)| *condition).collect(),
+        })
     }
 }
 

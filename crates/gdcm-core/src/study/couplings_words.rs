@@ -1,16 +1,12 @@
-//! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4).
-
-use std::collections::BTreeMap;
-
-use nalgebra::{Complex, DMatrix};
+//! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4); and the same as
+//! tables (M16.5).
 
 use crate::couplings::{
     FeedbackShare, LEAST_CONDITIONS, LoopMargin, MixingShare, Unknown, cyclic_inputs, feedback_shares, mixing_shares,
 };
-use crate::dataset::{Channel, ConditionId, Dataset, Pair};
-use crate::units::{number, signed, telling};
+use crate::dataset::Channel;
 
-use super::{CouplingCorrection, CouplingCost, CouplingEntry, CouplingsAssessment, Remark, RemarkKind, UnstablePole};
+use super::*;
 
 /// Entries told of each matrix, the largest.
 const TOLD: usize = 3;
@@ -135,17 +131,16 @@ impl CouplingsAssessment {
         remarks.extend(self.ringing_words().map(caution));
         if self.want_leads > 0 && self.couplings == CouplingCorrection::MixingAndFeedback {
             remarks.push(caution(format!(
-                "In {} {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
+                "In {} all held responses want lead, which no channel gives: the feedback takes its place, with large entries and \
                  poles far from where they were. Correct the phase by leads first.",
-                self.want_leads,
-                if self.want_leads == 1 { "condition" } else { "conditions" }
+                counted(self.want_leads)
             )));
         }
         let conditions = self.fitted.problem.conditions.len();
         if conditions < LEAST_CONDITIONS {
             remarks.push(caution(format!(
-                "Couplings of {conditions} {}: three are needed for error bars and for J of conditions left out.",
-                if conditions == 1 { "condition" } else { "conditions" }
+                "Couplings of {}: three are needed for error bars and for J of conditions left out.",
+                counted(conditions)
             )));
         }
         let fit = &self.fitted.fit;
@@ -174,16 +169,10 @@ impl CouplingsAssessment {
                 self.unstable.iter().filter(|of| of.is_representative == is_representative).collect();
             let is_in_band = poles.iter().map(|of| of.is_in_band).max()?;
             let whose = if is_representative { "physics representatives" } else { "other kept physics models" };
+            let places = unstable_places(&poles);
             let text = match poles.len() {
-                1 => {
-                    format!("A pole of the {whose} is newly unstable with the couplings: {}.", unstable_places(&poles))
-                }
-                count => {
-                    format!(
-                        "{count} poles of {whose} are newly unstable with the couplings: {}.",
-                        unstable_places(&poles)
-                    )
-                }
+                1 => format!("A pole of the {whose} is newly unstable with the couplings: {places}."),
+                count => format!("{count} poles of {whose} are newly unstable with the couplings: {places}."),
             };
             Some(Remark::new(if is_in_band { RemarkKind::Trouble } else { RemarkKind::Caution }, text))
         };
@@ -212,6 +201,11 @@ impl CouplingsAssessment {
             )
         })
     }
+}
+
+/// "1 condition", "11 conditions".
+fn counted(conditions: usize) -> String {
+    format!("{conditions} condition{}", if conditions == 1 { "" } else { "s" })
 }
 
 /// Whether a channel is an angular rate, by its unit.
@@ -309,11 +303,102 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
     })
 }
 
+impl CouplingsAssessment {
+    /// "mixing and feedback of 11 conditions; its least-squares problem is solved to 3e-16".
+    pub fn heading(&self) -> String {
+        format!(
+            "{} fitted to {}; the normal equations of the last solve hold to {:.0e}",
+            self.couplings.name(),
+            counted(self.fitted.problem.conditions.len()),
+            self.fitted.fit.residual
+        )
+    }
+
+    /// J on the axis and off it, without couplings and with them.
+    pub fn cost_table(&self) -> Table {
+        let columns = ["mean J", "on-axis, without", "on-axis, with", "others, without", "others, with"];
+        let mut table = Table::new("", columns);
+        let costs = &self.costs;
+        let cell = |cost: Option<f64>| cost.map_or_else(|| "-".to_owned(), |cost| format!("{cost:.1}"));
+        let mut row = |name: &str, without: AxisCost, with: AxisCost| {
+            let cells = [without.on_axis, with.on_axis, without.others, with.others].map(cell);
+            table.row(std::iter::once(name.to_owned()).chain(cells));
+        };
+        row("uncorrected", costs.uncorrected, AxisCost::default());
+        row("own correction", costs.own.without, costs.own.with);
+        row("scheduled", costs.scheduled.without, costs.scheduled.with);
+        if let Some(left_out) = costs.left_out {
+            row("condition left out", left_out.without, left_out.with);
+        }
+        table
+    }
+
+    /// The mixing at the mean airspeed, and the feedback where there is one: what each input (row) takes of each input and output. An
+    /// entry within its bar stands in brackets.
+    pub fn matrix_tables(&self, dataset: &Dataset) -> Vec<Table> {
+        let airspeed_kt = self.mean_airspeed_kt();
+        let (inputs, outputs) = dataset.names_of_channels();
+        let bars = if self.left_out_fits.is_empty() {
+            String::new()
+        } else {
+            format!(", ± bar of {} %, in brackets within it", number(100.0 * self.level))
+        };
+        let mixing = format!("Mixing at {} kt: share of each input that an input takes{bars}", telling(airspeed_kt, 0));
+        let mut tables = vec![matrix_table(mixing, &inputs, &inputs, &self.mixing(airspeed_kt))];
+        let feedback = self.feedback();
+        if feedback.iter().any(|entry| entry.value != 0.0) {
+            let of_unit = |(name, channel): (&String, &crate::dataset::Channel)| format!("{name} [{}]", channel.unit);
+            let to: Vec<String> = inputs.iter().zip(dataset.inputs()).map(of_unit).collect();
+            let from: Vec<String> = outputs.iter().zip(dataset.outputs()).map(of_unit).collect();
+            let title = format!("Feedback: units of an input for each unit of an output{bars}");
+            tables.push(matrix_table(title, &to, &from, &feedback));
+        }
+        tables
+    }
+
+    /// The poles of each condition's physics representative before and after, the farthest moved first.
+    pub fn pole_table(&self) -> Table {
+        let columns = ["condition", "before [rad/s]", "after [rad/s]", "moved by [rad/s]"];
+        let mut table = Table::new("Poles of the physics representatives, without couplings and with them", columns);
+        let pole = |of: nalgebra::Complex<f64>| {
+            let imaginary = if of.im == 0.0 { String::new() } else { format!(" ± {}j", telling(of.im.abs(), 3)) };
+            format!("{}{imaginary}", telling(of.re, 3).replace('-', "−"))
+        };
+        for (id, of) in &self.conditions {
+            let mut shifts: Vec<_> = of.poles.iter().flatten().collect();
+            shifts.sort_by(|a, b| b.distance_rad_s().unwrap_or(0.0).total_cmp(&a.distance_rad_s().unwrap_or(0.0)));
+            for shift in shifts {
+                let moved = shift.distance_rad_s().map_or_else(|| "-".to_owned(), |distance| telling(distance, 3));
+                let before = shift.before.map_or_else(|| "-".to_owned(), pole);
+                table.row([id.to_string(), before, pole(shift.after), moved]);
+            }
+        }
+        table
+    }
+}
+
+fn matrix_table(title: String, to: &[String], from: &[String], entries: &DMatrix<CouplingEntry>) -> Table {
+    let mut table = Table::new(title, std::iter::once("to".to_owned()).chain(from.iter().cloned()));
+    for (row, name) in to.iter().enumerate() {
+        let cells = (0..from.len()).map(|column| entry_words(&entries[(row, column)]));
+        table.row(std::iter::once(name.clone()).chain(cells));
+    }
+    table
+}
+
+/// "0.047 ± 0.011", in brackets where it is within its bar.
+fn entry_words(entry: &CouplingEntry) -> String {
+    let value = telling(entry.value, 3).replace('-', "−");
+    let bar = entry.half_width.filter(|half_width| *half_width > 0.0);
+    let text = bar.map_or_else(|| value.clone(), |bar| format!("{value} ± {}", telling(bar, 3)));
+    if entry.is_within_bar && entry.value != 0.0 { format!("({text})") } else { text }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::couplings_tests::EXAMPLE;
     use super::*;
     use crate::dataset::DatasetHeader;
-    use crate::study::couplings_example_tests::EXAMPLE;
 
     #[test]
     fn a_share_of_a_stick_in_another_unit_is_no_percentage() {

@@ -1,12 +1,8 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
-use std::sync::Arc;
+use crate::dataset::BandError;
 
-use crate::correction::Channel;
-use crate::dataset::{BandError, BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
-use crate::units::number;
-
-use super::{AdoptedModels, ConditionChoice, RequirementSettings, Setting, SignRole, Study, Value};
+use super::*;
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -244,8 +240,7 @@ impl Edit {
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::SetSign { channel, of } => {
-                let (inputs, outputs) = study.dataset.names_of_channels();
-                let name = channel.name(&inputs, &outputs);
+                let name = channel.name_in(&study.dataset);
                 of.map_or_else(|| format!("turn {name} back"), |of| format!("turn {name} ({})", of.word()))
             }
             Edit::TakeModels(taken) => match taken.as_slice() {
@@ -278,19 +273,15 @@ impl Study {
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
             Edit::Reject(id) => return self.reject(id),
-            Edit::RejectEach(models) => return self.each(models, Self::reject),
-            Edit::RestoreEach(models) => return self.each(models, Self::restore),
+            Edit::RejectEach(models) => return self.attempt(|of| models.iter().try_for_each(|model| of.reject(model))),
+            Edit::RestoreEach(models) => {
+                return self.attempt(|of| models.iter().try_for_each(|model| of.restore(model)));
+            }
             Edit::Pin(id) => return self.pin(id),
             Edit::Restore(id) => return self.restore(id),
-            Edit::RestoreAll { condition } => {
-                let (_, choice) = self.condition(*condition)?;
-                choice.restore_all();
-            }
+            Edit::RestoreAll { condition } => self.condition(*condition)?.1.restore_all(),
             Edit::RejectBecause { model, reason } => {
-                let mut trial = self.clone();
-                trial.reject(model)?;
-                trial.set_reason(model, reason)?;
-                *self = trial;
+                return self.attempt(|of| of.reject(model).and_then(|()| of.set_reason(model, reason)));
             }
             Edit::SetReason(id, reason) => return self.set_reason(id, reason),
             Edit::Unpin { condition, bundle } => self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None,
@@ -314,9 +305,8 @@ impl Study {
 
     /// A condition with the choices in it, to change.
     fn condition(&mut self, id: ConditionId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
-        let found = self.dataset.condition(id).zip(self.choices.get_mut(&id));
-        let (condition, choice) = found.ok_or(EditRefusal::NoCondition { condition: id })?;
-        Ok((condition, choice))
+        let found = self.dataset.condition(id).map(Arc::as_ref).zip(self.choices.get_mut(&id));
+        found.ok_or(EditRefusal::NoCondition { condition: id })
     }
 
     /// As [`Study::condition`], of a model that is there.
@@ -347,14 +337,10 @@ impl Study {
         Ok(())
     }
 
-    /// The same decision about several models: about all of them, or about none.
-    fn each(
-        &mut self,
-        models: &[ModelId],
-        decide: impl Fn(&mut Self, &ModelId) -> Result<(), EditRefusal>,
-    ) -> Result<(), EditRefusal> {
+    /// Several decisions as one: all of them, or none.
+    fn attempt(&mut self, decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>) -> Result<(), EditRefusal> {
         let mut trial = self.clone();
-        models.iter().try_for_each(|model| decide(&mut trial, model))?;
+        decide(&mut trial)?;
         *self = trial;
         Ok(())
     }

@@ -1,21 +1,10 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::correction::{Channel, ChannelLeads, Problem, ProofBudget, Solution};
-use crate::dataset::{Band, Condition, ConditionId, Dataset};
-use crate::executor::{Executor, Sequential};
-use crate::response::FrequencyGrid;
-use crate::schedule::{Schedule, ScheduleCaution, ScheduledPoint};
+use crate::schedule::{ScheduleCaution, ScheduledPoint};
 
-use super::{
-    Analysis, Assessed, AssessmentChoice, Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure,
-    ConditionModels, ConditionStages, ConventionDoubt, CouplingFitKey, CouplingOutcome, CouplingSource, Execution,
-    FittedCouplings, KnownModels, Memo, Progress, Purpose, Study, Uncertainty, assessed, convention_doubts,
-    model_count,
-};
+use super::*;
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.
@@ -24,8 +13,9 @@ use super::{
 /// Where couplings are asked for, they are fitted to the representatives and what follows these is of physics models with couplings.
 ///
 /// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
+#[derive(Clone)]
 pub struct Engine {
-    executor: Box<dyn Executor>,
+    executor: Arc<dyn Executor>,
     /// How far the proof of each condition's gains may go.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
@@ -54,7 +44,7 @@ impl Engine {
     /// An engine whose work is carried out by `executor`.
     pub fn with_executor(executor: Box<dyn Executor>) -> Self {
         Self {
-            executor,
+            executor: executor.into(),
             proofs: ProofBudget::default(),
             dataset: None,
             known: KnownModels::default(),
@@ -67,16 +57,7 @@ impl Engine {
 
     /// Another engine that knows what this one has computed, and goes its own way from there.
     pub fn fork(&self, executor: Box<dyn Executor>) -> Self {
-        Self {
-            executor,
-            proofs: self.proofs,
-            dataset: self.dataset.clone(),
-            known: self.known.clone(),
-            couplings: self.couplings.clone(),
-            conditions: self.conditions.clone(),
-            drawn: self.drawn,
-            curves: self.curves.clone(),
-        }
+        Self { executor: executor.into(), ..self.clone() }
     }
 
     /// Who carries out its work.
@@ -138,12 +119,8 @@ impl Engine {
             uncertainty: None,
         };
         let choice = AssessmentChoice::of_paper(&analysis.study.settings);
-        let ids: Vec<ConditionId> =
-            analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
-        let assess = |place: usize| match assessed(&analysis, ids[place], choice) {
-            Ok(of) => Assessed::Nominal(of.changes),
-            Err(why) => Assessed::LeftOut { why },
-        };
+        let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
+        let assess = |place: usize| Ok(assessed(&analysis, ids[place], choice)?.changes);
         let assessment = execution.each(ids.len(), 0, assess)?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
         Ok(analysis)
@@ -334,8 +311,8 @@ pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec
 
 /// The results of the conditions that are in the schedule, in file order.
 fn in_schedule<'a>(study: &Study, outcomes: &'a Outcomes) -> impl Iterator<Item = &'a ConditionAnalysis> {
-    let chosen = study.dataset.conditions().iter().map(|condition| condition.id());
-    chosen.filter(|id| study.choice(*id).is_in_schedule()).filter_map(|id| outcomes.get(&id)?.as_ref().ok())
+    let chosen = study.dataset.ids().filter(|id| study.choice(*id).is_in_schedule());
+    chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
 /// The channels of which no schedule can hold the signed delays of all conditions (M15.6).
@@ -347,7 +324,6 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
     let leads = in_schedule(study, outcomes)
         .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
-    let (inputs, outputs) = (study.dataset.inputs().len(), study.dataset.outputs().len());
     let caution = |channel: Channel| {
         let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.taus_s[channel])).collect();
         let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
@@ -359,5 +335,5 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
         (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
             .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
     };
-    Channel::all(inputs, outputs).filter_map(caution).collect()
+    Channel::all_of(&study.dataset).filter_map(caution).collect()
 }

@@ -3,8 +3,7 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::executor::{Executor, Sequential, each};
-use crate::progress::{Cancelled, Progress, Unobserved};
+use super::*;
 
 /// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
 pub struct Execution<'a> {

@@ -1,18 +1,19 @@
-//! The couplings of a study: what they are fitted to, and what was found (M16.1, M16.2).
+//! The couplings of a study: what they are fitted to, what was found (M16.1, M16.2), and a condition's physics models with them, the one
+//! place where what leaves takes them (M16.3).
 
-use std::sync::Arc;
+use std::borrow::Cow;
 
-use crate::correction::{Channels, LeadDesign, LeadSettings};
+use crate::correction::{Channels, CorrectedModel, LeadDesign, LeadSettings};
 use crate::couplings::{
-    CouplingCondition, CouplingError, CouplingFit, CouplingKind, CouplingMatrices, CouplingOptions, CouplingProblem,
-    coherence_deviation, fit_couplings, mean_delays_s, response_deviation, without_channels,
+    CoupledModelError, CouplingCondition, CouplingFit, CouplingKind, CouplingMatrices, CouplingOptions,
+    CouplingProblem, PoleShift, coherence_deviation, fit_couplings, mean_delays_s, response_deviation,
+    without_channels,
 };
-use crate::dataset::{BundleKind, Condition, ConditionId, ContentHash, Dynamics, Model, ModelBands, PairTable};
-use crate::executor::Executor;
+use crate::dataset::{ContentHash, ModelBands};
 use crate::fidelity::CoherenceWeights;
-use crate::response::{FrequencyGrid, FrequencyResponse, coherence_at};
+use crate::response::coherence_at;
 
-use super::{Cancelled, Comparison, GridKey, PhaseCorrection, Progress, Study};
+use super::*;
 
 /// The couplings of a study.
 #[derive(Clone, Debug)]
@@ -184,4 +185,96 @@ fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTab
     let estimate = response.estimate();
     let measurement = settings.uncertainty.measurement(estimate.averages, estimate.window_s)?;
     Some(coherence_deviation(&coherence_at(response, omega)?, &measurement))
+}
+
+/// What the couplings have changed of a condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CoupledCondition {
+    /// The comparison of the models as they are, which decides on the representatives.
+    pub before: Arc<Comparison>,
+    /// The couplings.
+    pub fitted: Arc<FittedCouplings>,
+}
+
+impl ConditionAnalysis {
+    fn airspeed_kt(&self) -> f64 {
+        self.condition.flight_state().airspeed_kt
+    }
+
+    /// `H~ = (I - H K)^-1 H M~` of a response of one of its physics models; the response itself without couplings.
+    #[must_use]
+    pub fn coupled_response<'a>(&self, physics: &'a FrequencyResponse) -> Cow<'a, FrequencyResponse> {
+        match &self.coupled {
+            None => Cow::Borrowed(physics),
+            Some(coupled) => Cow::Owned(coupled.fitted.matrices().response(physics, self.airspeed_kt())),
+        }
+    }
+
+    /// Where the couplings move the poles of the physics representative; nothing without couplings, and where it has no poles.
+    #[must_use]
+    pub fn pole_shifts(&self) -> Vec<PoleShift> {
+        let representative = self.representative_model(BundleKind::Physics).state_space();
+        let shifts = self.coupled.as_ref().zip(representative).map(|(coupled, of)| {
+            coupled.fitted.matrices().pole_shifts(of, self.airspeed_kt(), Pade::default()).unwrap_or_default()
+        });
+        shifts.unwrap_or_default()
+    }
+
+    /// The matrices of one of its physics models with the couplings in them; the model itself without couplings. Delays of its own
+    /// channels, which stand inside the loop, are then states: `pade` approximants, or whole samples.
+    ///
+    /// # Errors
+    /// [`CoupledModelError`] where the loop through the feed-through cannot be computed with.
+    pub fn coupled_model<'a>(
+        &self,
+        physics: &'a StateSpace,
+        pade: Pade,
+    ) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
+        coupled_model(self.coupled.as_ref().map(|coupled| &coupled.fitted), physics, self.airspeed_kt(), pade)
+    }
+
+    /// `M_O H~ M_I`: a physics model with the couplings, then with a correction of its channels.
+    ///
+    /// # Errors
+    /// As [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads cannot become states.
+    pub fn corrected_model(
+        &self,
+        physics: &StateSpace,
+        correction: &ChannelCorrection,
+        pade: Pade,
+    ) -> Result<CorrectedModel, CoupledModelError> {
+        let coupled = self.coupled_model(physics, pade)?;
+        Ok(CorrectedModel::of(&coupled, correction, pade)?)
+    }
+}
+
+/// A physics model with couplings in its matrices; the model itself without.
+fn coupled_model<'a>(
+    fitted: Option<&Arc<FittedCouplings>>,
+    physics: &'a StateSpace,
+    airspeed_kt: f64,
+    pade: Pade,
+) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
+    match fitted {
+        None => Ok(Cow::Borrowed(physics)),
+        Some(fitted) => fitted.matrices().model(physics, airspeed_kt, pade).map(Cow::Owned),
+    }
+}
+
+impl Analysis {
+    /// `M_O H~ M_I` of a physics model of any condition: also of one that has no result of its own.
+    ///
+    /// # Errors
+    /// As [`ConditionAnalysis::corrected_model`].
+    pub fn corrected_model(
+        &self,
+        condition: &Condition,
+        physics: &StateSpace,
+        correction: &ChannelCorrection,
+        pade: Pade,
+    ) -> Result<CorrectedModel, CoupledModelError> {
+        let airspeed_kt = condition.flight_state().airspeed_kt;
+        let coupled = coupled_model(self.fitted_couplings(), physics, airspeed_kt, pade)?;
+        Ok(CorrectedModel::of(&coupled, correction, pade)?)
+    }
 }

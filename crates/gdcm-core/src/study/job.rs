@@ -1,16 +1,46 @@
 //! Long work that is done beside the live answer.
 
-use std::sync::Arc;
+use std::ops::Deref;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
-use crate::correction::{Problem, ProblemError, ProofBudget, Solution, Toggle, solve, toggles};
-use crate::dataset::{Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair};
+use crate::correction::{Toggle, toggles};
 use crate::fidelity::{ModeTrack, mode_tracks};
-use crate::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, ModesError, PreparedModel, modes_of};
+use crate::identification::{Identification, IdentificationError, Options, ValidationSettings, identify};
+use crate::records::LaidOutRecord;
+use crate::response::{Mode, ModesError, modes_of};
 
-use super::{
-    Analysis, Cancelled, ConditionAnalysis, ConditionCurves, Engine, FittedCouplings, Progress, Study, Uncertainty,
-    in_turn,
-};
+use super::*;
+
+/// A value that several hold, equal to itself alone: two of them are compared without a look at their numbers.
+#[derive(Debug)]
+pub struct Shared<T: ?Sized>(Arc<T>);
+
+impl<T: ?Sized> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T: ?Sized> PartialEq for Shared<T> {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+impl<T: ?Sized> From<Arc<T>> for Shared<T> {
+    fn from(value: Arc<T>) -> Self {
+        Self(value)
+    }
+}
+
+impl<T: ?Sized> Deref for Shared<T> {
+    type Target = Arc<T>;
+
+    fn deref(&self) -> &Arc<T> {
+        &self.0
+    }
+}
 
 /// One piece of long work with progress and cancellation, done beside the live answer.
 ///
@@ -45,10 +75,7 @@ impl Job for ProofJob {
     type Output = Result<Arc<Solution>, ProblemError>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        match solve(&self.problem, ProofBudget::default(), &|| progress.cancelled()) {
-            Err(ProblemError::Stopped) => Err(Cancelled),
-            solved => Ok(solved.map(Arc::new)),
-        }
+        solved(&self.problem, ProofBudget::default(), progress)
     }
 }
 
@@ -81,27 +108,27 @@ impl Job for TogglesJob {
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let toggles = Toggles::of(&self.condition, &|| progress.cancelled());
-        if progress.cancelled() { Err(Cancelled) } else { Ok(toggles) }
+        // The table is a hint, not a result.
+        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
+        let ConditionAnalysis { gain_problem, gains, delay_problem, delays, .. } = &self.condition;
+        let gains = toggles(gain_problem, gains, budget, &|| progress.cancelled());
+        let delays = toggles(delay_problem, delays, budget, &|| progress.cancelled());
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(gains.ok().zip(delays.ok()).map(|(gains, delays)| Toggles { gains, delays }))
     }
 }
 
 /// The responses of every model of one condition, for drawing.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
     /// The models.
-    pub dataset: Arc<Dataset>,
+    pub dataset: Shared<Dataset>,
     /// The condition.
     pub condition: ConditionId,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
-}
-
-impl PartialEq for CurvesJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_dataset = Arc::ptr_eq(&self.dataset, &other.dataset);
-        same_dataset && self.condition == other.condition && self.grid == other.grid
-    }
 }
 
 impl Job for CurvesJob {
@@ -116,16 +143,10 @@ impl Job for CurvesJob {
 }
 
 /// The modes of every model of one condition.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
     /// The condition.
-    pub condition: Arc<Condition>,
-}
-
-impl PartialEq for ModesJob {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.condition, &other.condition)
-    }
+    pub condition: Shared<Condition>,
 }
 
 impl Job for ModesJob {
@@ -138,10 +159,10 @@ impl Job for ModesJob {
 }
 
 /// The responses of some models, wherever in the dataset they are, on one grid.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
     /// The dataset.
-    pub dataset: Arc<Dataset>,
+    pub dataset: Shared<Dataset>,
     /// The models; those that the dataset does not have are left out.
     pub models: Vec<ModelId>,
     /// The couplings of those models; none of models as they are.
@@ -165,14 +186,7 @@ impl AcrossJob {
         let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
         let couplings =
             analysis.filter(|_| role == AcrossRole::Corrected).and_then(Analysis::fitted_couplings).cloned();
-        Self { dataset: Arc::clone(dataset), models, couplings, grid }
-    }
-}
-
-impl PartialEq for AcrossJob {
-    fn eq(&self, other: &Self) -> bool {
-        let key = |of: &Self| (of.models.clone(), of.couplings.clone(), of.grid);
-        Arc::ptr_eq(&self.dataset, &other.dataset) && key(self) == key(other)
+        Self { dataset: Arc::clone(dataset).into(), models, couplings, grid }
     }
 }
 
@@ -255,15 +269,6 @@ pub struct Toggles {
 }
 
 impl Toggles {
-    /// Solves a condition with every response toggled in turn; `None` where `stop` said so first, or a problem has no answer.
-    pub fn of(condition: &ConditionAnalysis, stop: &dyn Fn() -> bool) -> Option<Self> {
-        // The table is a hint, not a result.
-        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
-        let gains = toggles(&condition.gain_problem, &condition.gains, budget, stop).ok()?;
-        let delays = toggles(&condition.delay_problem, &condition.delays, budget, stop).ok()?;
-        (!stop()).then_some(Self { gains, delays })
-    }
-
     /// The toggles of one response: of its gain and of its delay.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
@@ -282,10 +287,9 @@ impl PartialEq for VariantJob {
     /// The same dataset and the same decisions: the words that they are explained with do not count.
     fn eq(&self, other: &Self) -> bool {
         let (a, b) = (&self.study, &other.study);
-        let conditions = || a.dataset.conditions().iter().map(|condition| condition.id());
         Arc::ptr_eq(&a.dataset, &b.dataset)
             && a.settings == b.settings
-            && conditions().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
+            && a.dataset.ids().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
     }
 }
 
@@ -300,16 +304,10 @@ impl Job for VariantJob {
 }
 
 /// The bars of an analysis, and what follows from them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
-}
-
-impl PartialEq for UncertaintyJob {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.analysis, &other.analysis)
-    }
+    pub analysis: Shared<Analysis>,
 }
 
 impl Job for UncertaintyJob {
@@ -350,15 +348,186 @@ impl ConditionModes {
 
     /// The modes of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 
     /// Each mode of the model of index `reference` followed through its bundle. A model without modes leaves gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
         let modes = self.bundle(kind).iter().map(|modes| modes.as_deref().unwrap_or_default());
         mode_tracks(&modes.collect::<Vec<&[Mode]>>(), reference)
+    }
+}
+
+/// Why there is nothing to identify a model from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NothingToIdentify {
+    /// No record is used.
+    #[error("there is no record to identify from: add some, or use those that are there")]
+    NoRecord,
+    /// Every record is held out.
+    #[error("every record is held out: at least one has to be left to identify from")]
+    AllHeldOut,
+}
+
+/// Records, and how models are to be identified from them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdentificationRequest {
+    /// The records, in the units of the channels.
+    pub records: Shared<[FlightRecord]>,
+    /// How.
+    pub options: Options,
+}
+
+impl IdentificationRequest {
+    /// The request of those `records` that are used, those held out of the fit that their guess says.
+    ///
+    /// # Errors
+    /// No record is used, or all are held out.
+    pub fn of<'r>(
+        records: impl Iterator<Item = &'r LaidOutRecord>,
+        preparation: Preparation,
+        band: [f64; 2],
+    ) -> Result<Self, NothingToIdentify> {
+        let used = records.filter_map(|record| Some((record.used_flight()?, record.guess.held_out)));
+        let (flights, held_out): (Vec<FlightRecord>, Vec<bool>) =
+            used.map(|(flight, held_out)| (flight.as_ref().clone(), held_out)).unzip();
+        let held_out: Vec<usize> = (0..flights.len()).filter(|index| held_out[*index]).collect();
+        if flights.is_empty() {
+            return Err(NothingToIdentify::NoRecord);
+        }
+        if held_out.len() == flights.len() {
+            return Err(NothingToIdentify::AllHeldOut);
+        }
+        Ok(Self {
+            records: Arc::<[_]>::from(flights).into(),
+            options: Options { held_out, ..Options::new(band, preparation) },
+        })
+    }
+
+    /// Identifies models.
+    ///
+    /// # Errors
+    /// Those of [`identify`].
+    pub fn identify(
+        &self,
+        executor: &dyn Executor,
+        progress: &dyn Progress,
+    ) -> Result<Identification, IdentificationError> {
+        identify(&self.records, &self.options, executor, progress)
+    }
+}
+
+/// What an identification under way has told.
+#[derive(Clone, Debug, Default)]
+pub struct IdentificationNews {
+    /// The step under way, in words.
+    pub step: String,
+    /// The first model, before it is refined.
+    pub first_model: Option<Arc<StateSpace>>,
+    /// How long it took, once it is done \[s\].
+    pub duration_s: Option<f64>,
+}
+
+/// Models of one condition from its flight records.
+#[derive(Clone, Debug)]
+pub struct IdentifyJob {
+    /// The condition.
+    pub condition: ConditionId,
+    /// What is asked for.
+    pub request: IdentificationRequest,
+    /// What is told meanwhile; no part of what is asked for.
+    news: Arc<Mutex<IdentificationNews>>,
+}
+
+impl IdentifyJob {
+    /// The job of this request.
+    pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
+        Self { condition, request, news: Arc::default() }
+    }
+
+    /// What it has told so far.
+    pub fn told(&self) -> IdentificationNews {
+        told(&self.news).clone()
+    }
+}
+
+impl PartialEq for IdentifyJob {
+    fn eq(&self, other: &Self) -> bool {
+        self.condition == other.condition && self.request == other.request
+    }
+}
+
+/// The news; a panic while they were locked leaves them whole.
+fn told(news: &Mutex<IdentificationNews>) -> MutexGuard<'_, IdentificationNews> {
+    news.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Keeps the news, and hands on the rest.
+struct Told<'a> {
+    progress: &'a dyn Progress,
+    news: &'a Mutex<IdentificationNews>,
+}
+
+impl Progress for Told<'_> {
+    fn cancelled(&self) -> bool {
+        self.progress.cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        self.progress.advanced(done, total);
+    }
+
+    fn step(&self, what: &str) {
+        what.clone_into(&mut told(self.news).step);
+    }
+
+    fn first_model(&self, model: &StateSpace) {
+        told(self.news).first_model = Some(Arc::new(model.clone()));
+    }
+}
+
+impl Job for IdentifyJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    type Output = Result<Arc<Identification>, IdentificationError>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let begin = Instant::now();
+        let found = self.request.identify(executor.as_ref(), &Told { progress, news: &self.news });
+        told(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
+        match found {
+            Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
+            found => Ok(found.map(Arc::new)),
+        }
+    }
+}
+
+/// What a model gives for the inputs of a flight record (M14, section 6).
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationJob {
+    /// The record, in the units of the dataset.
+    pub record: Shared<FlightRecord>,
+    /// How its channels are prepared.
+    pub preparation: Preparation,
+    /// The model.
+    pub model: StateSpace,
+}
+
+impl Job for SimulationJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    /// In words why there is none.
+    type Output = Result<Arc<Validation>, String>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let segments = segments_of(&self.record, &self.preparation);
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        let found = segments.map_err(|error| error.to_string()).and_then(|segments| {
+            let settings = ValidationSettings::unfiltered();
+            validate(&self.model, &segments, &settings, executor.as_ref()).map_err(|error| error.to_string())
+        });
+        Ok(found.map(Arc::new))
     }
 }

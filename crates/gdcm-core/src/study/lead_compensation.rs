@@ -1,18 +1,11 @@
 //! What lead filters leave of the difference between two representatives (M15.5).
 
-use std::sync::Arc;
-
-use crate::correction::{
-    Bounds, Channel, ChannelCorrection, ChannelLeads, DELAY_AGREEMENT_S, LeadPrice, Problem, Quantity, delta_gains,
-};
-use crate::dataset::{Pair, PairTable};
-use crate::fidelity::{Cost, CostAverage, Mismatch};
+use crate::correction::LeadPrice;
 use crate::response::LeadFilter;
-use crate::schedule::{CostChange, corrected_cost};
-use crate::uncertainty::Scalar;
-use crate::units::{number, ratio_to_db, s_to_ms, signed, telling};
+use crate::schedule::corrected_cost;
+use crate::units::ratio_to_db;
 
-use super::{ConditionAnalysis, PhaseCorrection, Remark, RemarkKind, Repeated, Study, Uncertainty, miss_words};
+use super::*;
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,28 +40,6 @@ pub struct LeadOffer {
 }
 
 impl LeadOffer {
-    /// Signed delays in place of what the held responses get, where all of those want lead.
-    ///
-    /// The weight of the regularisation is 1 whatever delays are asked with: it decides on shares, not on what is held.
-    pub(super) fn problem(
-        delays_s: &PairTable<Option<f64>>,
-        held: &PairTable<bool>,
-        fitted: PairTable<bool>,
-        bounds: Bounds,
-    ) -> Option<Problem> {
-        let mut held_s = held.marked().map(|pair| delays_s[pair].unwrap_or_default()).peekable();
-        held_s.peek()?;
-        held_s.all(|delay_s| delay_s < 0.0).then(|| Problem {
-            quantity: Quantity::SignedDelay,
-            delta: delays_s.clone(),
-            constrained: held.clone(),
-            fitted,
-            bounds,
-            alpha: 1.0,
-            agreement: DELAY_AGREEMENT_S,
-        })
-    }
-
     /// The offer of these leads, where they would leave J of the held responses at least a tenth less than it is now.
     pub(super) fn of(
         leads: ChannelLeads,
@@ -77,14 +48,7 @@ impl LeadOffer {
         (omega, average): (&[f64], CostAverage),
     ) -> Option<Self> {
         const WORTH: f64 = 0.9;
-        let (delays_s, ones) = (leads.delays_s(), leads.taus_s.map(|_, _| 1.0));
-        let phase_alone = ChannelCorrection {
-            input_gains: ones.inputs,
-            output_gains: ones.outputs,
-            input_delays_s: delays_s.inputs,
-            output_delays_s: delays_s.outputs,
-            leads: Some(leads),
-        };
+        let phase_alone = ChannelCorrection::of_leads(leads.taus_s.map(|_, _| 1.0), leads);
         let left = corrected_cost(mismatch, &phase_alone, omega, average);
         let of_both = |(pair, left): (Pair, &Option<Cost>)| {
             let (left, now) = ((*left)?.phase, now[pair]?.corrected);
@@ -107,7 +71,7 @@ const NOTHING_S: f64 = 2e-3;
 /// it: "65 ± 4 ms" (M13).
 pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
     let Some(compensated) = &result.compensated else { return Vec::new() };
-    let (inputs, outputs) = study.dataset.names_of_channels();
+    let name = |channel: Channel| channel.name_in(&study.dataset);
     let price = LeadPrice::of(&compensated.leads);
     let half_ms = |pair: Pair| {
         let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
@@ -120,14 +84,14 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         let part = |channel: Channel| {
             let tau_s = compensated.leads.taus_s[channel];
             let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
-            format!("{sign}{} on {}", ms(tau_s), channel.name(&inputs, &outputs))
+            format!("{sign}{} on {}", ms(tau_s), name(channel))
         };
         let price = price.as_ref().and_then(|price| price.pair_words(pair)).map(|words| format!("; {words}"));
         let price = price.unwrap_or_default();
         Some(format!(
             "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
-            output.name(&inputs, &outputs),
-            input.name(&inputs, &outputs),
+            name(output),
+            name(input),
             ms(wanted_s),
             half_ms(pair).unwrap_or_default(),
             if wanted_s < 0.0 { "lead" } else { "delay" },
@@ -137,11 +101,10 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
     };
     let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
     let replaced = filters().map(|(channel, filter)| {
-        let name = channel.name(&inputs, &outputs);
         let at_above = price.as_ref().map(|price| {
             format!("; {} dB at {} rad/s", signed(price.gains_db[channel], 1), number(price.above_rad_s()))
         });
-        format!("{name}: {}{}", servo_words(filter), at_above.unwrap_or_default())
+        format!("{}: {}{}", name(channel), servo_words(filter), at_above.unwrap_or_default())
     });
     result.held().marked().filter_map(wants).chain(replaced).chain(lead_limit_words(result)).collect()
 }

@@ -1,11 +1,9 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use crate::correction::{Channel, Sensitivity, Solution, kkt_residual, sensitivities};
-use crate::dataset::Pair;
-use crate::schedule::Schedule;
-use crate::units::{number, s_to_ms, telling, told_apart};
+use crate::correction::{Sensitivity, kkt_residual, sensitivities};
+use crate::units::told_apart;
 
-use super::{Caution, ConditionAnalysis, PhaseCorrection, SignRole, Study, lead_remarks};
+use super::*;
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,9 +95,8 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
         ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
     });
-    let (inputs, outputs) = study.dataset.names_of_channels();
     let turned = study.signs.iter().map(|(channel, of)| {
-        let (name, of) = (channel.name(&inputs, &outputs), of.models());
+        let (name, of) = (channel.name_in(&study.dataset), of.models());
         let text = format!("{name} of {of} is turned: its sign is not that of the file.");
         Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
     });

@@ -7,23 +7,18 @@
 //! ```
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
 
-use serde::Serialize;
-
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Pade};
-use crate::dataset::{self, Band, BundleKind, ConditionId, Dynamics, Model, ModelBands, Pair};
+use crate::dataset::{self, ModelBands};
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
     Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel, search_frequencies, substitution_bar,
 };
-use crate::response::GainDelay;
-use crate::uncertainty::{Figures, Scalar, student_quantile};
+use crate::uncertainty::{Figures, student_quantile};
 
-use super::{AskedCondition, RequirementRole};
+use super::*;
 
 /// Bandwidth and phase delay of one response of one model of a condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BandwidthFinding {
     /// The condition.
     pub condition: ConditionId,
@@ -189,13 +184,6 @@ impl PairCorrection {
     }
 }
 
-/// A model in place of its representative, with what the correction then is.
-struct Swap<'a> {
-    kind: BundleKind,
-    model: usize,
-    figures: Option<&'a Figures>,
-}
-
 /// The values of the numbers of one response, where there are any; the order is that of [`METRICS`].
 type MetricValues = [Option<f64>; 5];
 
@@ -208,23 +196,17 @@ struct PreparedModels<'a> {
     /// The same with the couplings, as far as they have matrices; empty without couplings.
     of_coupled: BTreeMap<usize, ReadModel<'a>>,
     identified: ReadModel<'a>,
-    swaps: Vec<Swap<'a>>,
+    swaps: &'a [Swap],
 }
 
 impl<'a> PreparedModels<'a> {
     fn of(asked: &'a AskedCondition<'a>) -> Self {
         let uncertainty = asked.analysis.uncertainty.as_deref();
         let of_condition = uncertainty.and_then(|uncertainty| uncertainty.conditions.get(&asked.id()));
-        let substitutions = of_condition.map_or(&[][..], |of| of.substitutions.substitutions.as_slice());
-        let swap = |(kind, model, figures): &'a (BundleKind, usize, Option<std::sync::Arc<Figures>>)| Swap {
-            kind: *kind,
-            model: *model,
-            figures: figures.as_deref(),
-        };
-        let swaps: Vec<Swap<'a>> = substitutions.iter().map(swap).collect();
+        let swaps: &[Swap] = of_condition.map_or(&[], |of| &of.substitutions.substitutions);
         let bundle = |kind| asked.result.condition.bundle(kind);
         let physics = asked.result.comparison.physics.model;
-        let others = swaps.iter().filter(|swap| swap.kind == BundleKind::Physics).map(|swap| swap.model);
+        let others = swaps.iter().filter(|(kind, ..)| *kind == BundleKind::Physics).map(|(_, model, _)| *model);
         let models: Vec<usize> = std::iter::once(physics).chain(others).collect();
         let band = asked.analysis.study.settings.band;
         let prepared =
@@ -240,7 +222,7 @@ impl<'a> PreparedModels<'a> {
         };
         let is_coupled = asked.result.coupled.is_some();
         let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
-        let flight = &bundle(BundleKind::Identified)[asked.result.comparison.identified.model];
+        let flight = asked.result.representative_model(BundleKind::Identified);
         let identified = ReadModel::of(Cow::Borrowed(flight), band);
         Self { asked, physics, of_physics, of_coupled, identified, swaps }
     }
@@ -276,21 +258,7 @@ impl<'a> PreparedModels<'a> {
             input,
             role,
             model: self.asked.model_name(role),
-            omega_bw_rad_s: None,
-            omega_phase_rad_s: None,
-            omega_gain_rad_s: None,
-            omega_180_rad_s: None,
-            phase_delay_s: None,
-            rule: None,
-            gain_limited: false,
-            phase_departure_deg: None,
-            phase_delay_of_line: false,
-            rests_above_band: Vec::new(),
-            rests_below_band: Vec::new(),
-            interval: BTreeMap::new(),
-            swaps_left_out: BTreeMap::new(),
-            reversed_phase_deg: None,
-            absent: BTreeMap::new(),
+            ..BandwidthFinding::default()
         }
     }
 
@@ -350,7 +318,7 @@ impl<'a> PreparedModels<'a> {
     fn add_swapped(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let of_bundle = |kind: BundleKind| -> Vec<MetricValues> {
-            let swaps = self.swaps.iter().filter(|swap| swap.kind == kind);
+            let swaps = self.swaps.iter().filter(|(of, ..)| *of == kind);
             swaps.map(|swap| self.swapped(swap, finding.pair, finding.role)).collect()
         };
         let physics = of_bundle(BundleKind::Physics);
@@ -370,15 +338,15 @@ impl<'a> PreparedModels<'a> {
     }
 
     /// The numbers of a response after a swap.
-    fn swapped(&self, swap: &Swap<'_>, pair: Pair, role: RequirementRole) -> MetricValues {
+    fn swapped(&self, (kind, model, figures): &Swap, pair: Pair, role: RequirementRole) -> MetricValues {
         let leads = self.asked.result.correction.leads.as_ref();
-        let correction = match (role, swap.figures) {
-            (RequirementRole::Corrected, figures) => {
-                figures.and_then(|figures| PairCorrection::of_swap(figures, pair, leads))
+        let correction = match role {
+            RequirementRole::Corrected => {
+                figures.as_ref().and_then(|figures| PairCorrection::of_swap(figures, pair, leads))
             }
             _ => Some(PairCorrection::NONE),
         };
-        let model = if swap.kind == BundleKind::Physics { swap.model } else { self.physics };
+        let model = kind.pick(*model, self.physics);
         let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
         let read = self.physics_of(role, model).ok();
         let bandwidth = correction.zip(read).and_then(|(correction, read)| {

@@ -1,19 +1,13 @@
 //! The modes of the physics representative, as it is and with the couplings of the study, against those of the identified one, where both
 //! are known by their matrices (M17.3).
 
-use std::collections::BTreeMap;
-
-use serde::Serialize;
-
-use crate::correction::Pade;
-use crate::dataset::{BundleKind, ConditionId, Dynamics, Model};
 use crate::identification::PoleEstimate;
 use crate::requirements::{
-    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeValues, ModeVerdict, ModelModes, NamedBy, compare_modes,
+    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeValues, ModelModes, NamedBy, compare_modes,
 };
 use crate::response::{Mode, modes_of};
 
-use super::AskedCondition;
+use super::*;
 
 /// The poles that were identified of conditions, with how sure they are: a dataset does not keep that.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -118,11 +112,7 @@ pub struct ModeFinding {
 /// Why there are none, in words.
 pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> Result<Vec<ModeFinding>, String> {
     let tolerances = &asked.analysis.study.requirements.mode_tolerances;
-    let representative = |kind: BundleKind| {
-        let condition = &asked.result.condition;
-        &condition.bundle(kind)[asked.result.representative(kind).model]
-    };
-    let (physics, identified) = (representative(BundleKind::Physics), representative(BundleKind::Identified));
+    let [physics, identified] = BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
     let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
     let of_corrected = coupled_modes(asked, physics)?;
     let flown = ModelModes { modes: &of_identified, states: &identified.states };
@@ -169,8 +159,8 @@ fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::couplings_example_tests::EXAMPLE;
     use super::super::{Execution, requirements_of};
+    use super::couplings_tests::EXAMPLE;
     use super::*;
     use crate::requirements::ModeVerdict;
 

@@ -1,24 +1,111 @@
 //! What a qualification asks of the models of every condition (M17), without flight records: bandwidth and phase delay, modes, summary
-//! costs.
+//! costs; what it is asked with, and of which models.
 
-use std::collections::{BTreeMap, BTreeSet};
+use crate::correction::CorrectedModelError;
+use crate::couplings::{CoupledModelError, without_delays};
+use crate::requirements::{CommandType, LevelBoundaries, ModeToleranceTable, Summary, SummarySource, TestInput};
 
-use serde::Serialize;
+use super::*;
 
-use crate::correction::ChannelCorrection;
-use crate::dataset::{BundleKind, ConditionId, Pair};
-use crate::requirements::{Summary, SummarySource};
+/// What requirements are asked with; a part that is left out is the default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RequirementSettings {
+    /// Names of the outputs whose attitude the stick commands; of all others it commands the rate.
+    #[serde(skip_serializing_if = "BTreeSet::is_empty")]
+    pub attitude_command: BTreeSet<String>,
+    /// Boundaries of levels over bandwidth and phase delay.
+    #[serde(skip_serializing_if = "is_default")]
+    pub levels: LevelBoundaries,
+    /// How far a time history may be from the flown one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub tolerances: ToleranceTable,
+    /// How far a mode may be from the flown one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub mode_tolerances: ModeToleranceTable,
+    /// From where on the overview says that a corrected model is far from the identified one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub overview: OverviewLimits,
+    /// What the models answer to where no flight record is shown.
+    #[serde(skip_serializing_if = "is_default")]
+    pub test: TestInput,
+}
 
-use super::{
-    Analysis, AssessedCorrection, BandwidthFinding, Cancelled, ConditionAnalysis, Engine, Execution, KnownPoles,
-    ModeFinding, Progress, bandwidth_findings, mode_findings,
-};
+/// From where on the overview of the corrected models says that one is far from the identified one: limits of the program, of no standard.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct OverviewLimits {
+    /// Difference of the bandwidth, as a part of the identified one.
+    pub bandwidth: f64,
+    /// Difference of the phase delay \[s\].
+    pub phase_delay_s: f64,
+    /// Least share of time inside a tolerance, 0 to 1.
+    pub share_inside: f64,
+}
+
+impl Default for OverviewLimits {
+    fn default() -> Self {
+        Self { bandwidth: 0.1, phase_delay_s: 0.02, share_inside: 0.9 }
+    }
+}
+
+/// A limit of the overview that is not above zero.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
+pub struct OverviewLimitsError {
+    /// Which.
+    pub name: &'static str,
+    /// What stands there.
+    pub found: f64,
+}
+
+impl OverviewLimits {
+    /// The same, checked.
+    ///
+    /// # Errors
+    /// [`OverviewLimitsError`] where one is not a number above zero.
+    pub fn checked(self) -> Result<Self, OverviewLimitsError> {
+        let Self { bandwidth, phase_delay_s, share_inside } = self;
+        let limits = [("bandwidth", bandwidth), ("phase_delay_s", phase_delay_s), ("share_inside", share_inside)];
+        match limits.into_iter().find(|(_, value)| !value.is_finite() || *value <= 0.0) {
+            Some((name, found)) => Err(OverviewLimitsError { name, found }),
+            None => Ok(self),
+        }
+    }
+}
+
+impl Analysis {
+    /// The same analysis, of which requirements are asked with other settings.
+    pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
+        let mut analysis = self.clone();
+        analysis.study.requirements = Arc::clone(settings);
+        analysis
+    }
+}
+
+impl RequirementSettings {
+    /// How an axis answers to its stick, by the name of its output.
+    pub fn command_of(&self, output: &str) -> CommandType {
+        if self.attitude_command.contains(output) { CommandType::Attitude } else { CommandType::Rate }
+    }
+
+    /// What names outputs that the dataset does not have, in words.
+    pub fn without_channel(&self, dataset: &Dataset) -> Vec<String> {
+        let (_, outputs) = dataset.names_of_channels();
+        let unknown = |name: &&String| !outputs.contains(name);
+        let commands = self.attitude_command.iter().filter(unknown);
+        let commands = commands.map(|name| format!("attitude command of {name}: the dataset has no such output"));
+        let levels = self.levels.unknown_axes(&outputs).into_iter();
+        commands.chain(levels.map(|name| format!("levels of {name}: the dataset has no such output"))).collect()
+    }
+}
 
 /// Which model of a condition a number is of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
     /// The physics representative as it is.
+    #[default]
     Physics,
     /// The same under the condition's own correction.
     Corrected,
@@ -105,7 +192,7 @@ pub struct RequirementCaution {
 }
 
 /// What a qualification asks of the models of every condition, as it is written.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// The identified band \[rad/s\].
     pub band_rad_s: [f64; 2],
@@ -196,40 +283,24 @@ impl AskedCondition<'_> {
 }
 
 /// What is found of one condition.
-#[derive(Default)]
-struct ConditionFindings {
-    bandwidth: Vec<BandwidthFinding>,
-    modes: Vec<ModeFinding>,
-    summary: Vec<SummaryFinding>,
-    missing: Vec<MissingFinding>,
-}
-
-impl ConditionFindings {
-    fn of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Self {
-        let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
-        let result = match analysis.conditions.get(&id) {
-            Some(Ok(result)) => result,
-            Some(Err(failure)) => return Self::without(missing("all", failure.to_string())),
-            None => return Self::without(missing("all", "it was not analysed".to_owned())),
-        };
-        let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
-        let asked = AskedCondition { analysis, result, scheduled };
-        let (modes, no_modes) = match mode_findings(&asked, known) {
-            Ok(modes) => (modes, None),
-            Err(why) => (Vec::new(), Some(missing("modes", why))),
-        };
-        let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
-        Self {
-            bandwidth: bandwidth_findings(&asked),
-            modes,
-            summary: against_flight.map(|role| asked.summary(role)).collect(),
-            missing: no_modes.into_iter().collect(),
-        }
+fn findings_of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Requirements {
+    let mut found = Requirements::default();
+    let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
+    let result = match analysis.result(id) {
+        Ok(result) => result,
+        Err(why) => return Requirements { missing: vec![missing("all", why)], ..found },
+    };
+    let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
+    let asked = AskedCondition { analysis, result, scheduled };
+    found.bandwidth = bandwidth_findings(&asked);
+    match mode_findings(&asked, known) {
+        Ok(modes) => found.modes = modes,
+        Err(why) => found.missing.push(missing("modes", why)),
     }
-
-    fn without(missing: MissingFinding) -> Self {
-        Self { missing: vec![missing], ..Self::default() }
-    }
+    let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
+    found.summary = against_flight.map(|role| asked.summary(role)).collect();
+    found.cautions = reversed_phases(analysis, &found.bandwidth);
+    found
 }
 
 /// What a qualification asks of the models of every condition with a result (M17.1, M17.3, M17.4), without records. Each condition is
@@ -243,23 +314,19 @@ pub fn requirements_of(
     execution: &Execution<'_>,
 ) -> Result<Requirements, Cancelled> {
     let settings = &analysis.study.settings;
-    let ids: Vec<ConditionId> = analysis.study.dataset.conditions().iter().map(|condition| condition.id()).collect();
-    let found = execution.each(ids.len(), 1, |index| ConditionFindings::of(analysis, known, ids[index]))?;
+    let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
+    let found = execution.each(ids.len(), 1, |index| findings_of(analysis, known, ids[index]))?;
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
         interval_level: settings.uncertainty.level,
         attitude_command: analysis.study.requirements.attitude_command.clone(),
-        bandwidth: Vec::new(),
-        modes: Vec::new(),
-        summary: Vec::new(),
-        missing: Vec::new(),
-        cautions: Vec::new(),
+        ..Requirements::default()
     };
     if let Err(error) = &analysis.schedule {
         requirements.missing.push(MissingFinding { condition: None, what: "scheduled", why: error.to_string() });
     }
     for of_condition in found {
-        requirements.cautions.extend(reversed_phases(analysis, &of_condition.bandwidth));
+        requirements.cautions.extend(of_condition.cautions);
         requirements.bandwidth.extend(of_condition.bandwidth);
         requirements.modes.extend(of_condition.modes);
         requirements.summary.extend(of_condition.summary);
@@ -302,4 +369,85 @@ fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<Re
         ),
     };
     reversed.into_iter().map(caution).collect()
+}
+
+/// Why the model of a role cannot be simulated.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RoleModelError {
+    /// It is a response that was measured.
+    #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
+    Measured {
+        /// Its name.
+        model: String,
+    },
+    /// It acts in discrete time.
+    #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
+    Discrete {
+        /// Its name.
+        model: String,
+    },
+    /// There is no schedule.
+    #[error(transparent)]
+    NoSchedule(#[from] ScheduleError),
+    /// Delays or leads cannot become states.
+    #[error(transparent)]
+    Delays(#[from] CorrectedModelError),
+    /// Couplings or a correction cannot be put on it.
+    #[error(transparent)]
+    Coupled(#[from] CoupledModelError),
+}
+
+impl Analysis {
+    /// The model of a role of a condition in continuous time, its delays as states: the physics representative as it is, with the
+    /// couplings of the study and a correction (`M_O H~ M_I`), or the identified representative.
+    ///
+    /// # Errors
+    /// [`RoleModelError`] where the model has no matrices or acts in discrete time, there is no schedule, or matrices cannot be
+    /// computed with.
+    pub fn role_model(&self, of: &ConditionAnalysis, role: RequirementRole) -> Result<StateSpace, RoleModelError> {
+        let representative = |kind: BundleKind| continuous(&of.condition.bundle(kind)[of.representative(kind).model]);
+        let corrected = |by: AssessedCorrection| -> Result<StateSpace, RoleModelError> {
+            let correction = by.of(self, of)?;
+            Ok(of.corrected_model(representative(BundleKind::Physics)?, &correction, Pade::default())?.model)
+        };
+        match role {
+            RequirementRole::Physics | RequirementRole::Identified => {
+                Ok(without_delays(representative(role.bundle())?, Pade::default())?)
+            }
+            RequirementRole::Corrected => corrected(AssessedCorrection::Own),
+            RequirementRole::Scheduled => corrected(AssessedCorrection::Scheduled),
+        }
+    }
+}
+
+/// The matrices of a model of continuous time.
+fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
+    let name = || model.name.clone();
+    let matrices = model.state_space().ok_or_else(|| RoleModelError::Measured { model: name() })?;
+    match matrices.timing().sample_time_s {
+        None => Ok(matrices),
+        Some(_) => Err(RoleModelError::Discrete { model: name() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::requirements::{TestInputShape, Tolerance};
+
+    #[test]
+    fn what_was_not_decided_is_not_written_and_what_was_comes_back() {
+        assert_eq!(serde_json::to_string(&RequirementSettings::default()).unwrap(), "{}");
+        let row = Tolerance { absolute: 4.0, ..ToleranceTable::default().rows()[0].clone() };
+        let settings = RequirementSettings {
+            attitude_command: BTreeSet::from(["Q".to_owned()]),
+            tolerances: ToleranceTable::new("our own", vec![row]).unwrap(),
+            overview: OverviewLimits { bandwidth: 0.15, ..OverviewLimits::default() },
+            test: TestInput { shape: TestInputShape::Doublet, ..TestInput::default() },
+            ..RequirementSettings::default()
+        };
+        let text = serde_json::to_string(&settings).unwrap();
+        assert_eq!(serde_json::from_str::<RequirementSettings>(&text).unwrap(), settings, "{text}");
+        assert_eq!((settings.command_of("Q"), settings.command_of("P")), (CommandType::Attitude, CommandType::Rate));
+    }
 }

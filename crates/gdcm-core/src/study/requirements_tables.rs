@@ -1,41 +1,28 @@
-//! What a qualification asks, as tables, and the job that finds it beside the live answer (M17).
+//! What a qualification asks, as tables, and the job that finds it beside the live answer (M17). One table has the corrected model of every
+//! condition against the identified one, requirement by requirement:
+//!
+//! ```text
+//! bandwidth     100 (omega_BW / omega_BW of the identified model - 1) [%]
+//! phase delay   tau_p - tau_p of the identified model [ms]
+//! records       share of time inside each tolerance that is not of an integral [%]
+//! modes         those beyond their tolerance, of those that have one and are determined
+//! ```
 
-use std::sync::Arc;
+use crate::requirements::{BandwidthRule, NamedBy};
 
-use crate::dataset::{ConditionId, Dataset};
-use crate::executor::Executor;
-use crate::requirements::{BandwidthRule, ModeVerdict, NamedBy};
-use crate::units::{s_to_ms, telling};
-
-use super::{
-    Analysis, BandwidthFinding, Cancelled, Execution, Job, KnownPoles, MissingFinding, ModeNumbers, Progress,
-    RequirementRole, RequirementSettings, Requirements, SummaryFinding, Table, TimeHistories, Uncertainty,
-    requirements_of,
-};
+use super::*;
 
 /// What a qualification asks of an analysis, with its error bars where they are known.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// How sure its values are.
-    pub uncertainty: Option<Arc<Uncertainty>>,
+    pub uncertainty: Option<Shared<Uncertainty>>,
     /// What is asked with, which an analysis does not depend on.
     pub settings: Arc<RequirementSettings>,
     /// What was identified of conditions.
     pub known: KnownPoles,
-}
-
-impl PartialEq for RequirementsJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_bars = match (&self.uncertainty, &other.uncertainty) {
-            (Some(one), Some(other)) => Arc::ptr_eq(one, other),
-            (None, None) => true,
-            _ => false,
-        };
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis && same_bars && self.settings == other.settings && self.known == other.known
-    }
 }
 
 impl Job for RequirementsJob {
@@ -44,7 +31,8 @@ impl Job for RequirementsJob {
     type Output = Arc<Requirements>;
 
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let analysis = Analysis { uncertainty: self.uncertainty.clone(), ..self.analysis.asked_with(&self.settings) };
+        let analysis =
+            Analysis { uncertainty: self.uncertainty.as_deref().cloned(), ..self.analysis.asked_with(&self.settings) };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
         Ok(Arc::new(requirements_of(&analysis, &self.known, &execution)?))
     }
@@ -236,5 +224,133 @@ impl ModeVerdict {
             Self::NoTolerance => "no tolerance",
             Self::NotPaired => "none near",
         }
+    }
+}
+
+/// The corrected model of every condition against the identified one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RequirementsOverview {
+    /// A row for each requirement with its limit, a column for each condition; a dash where there is no number.
+    pub table: Table,
+    /// Whether a cell is beyond its limit, row by row.
+    outside: Vec<Vec<bool>>,
+}
+
+/// Columns that say what a row is of.
+const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
+
+impl RequirementsOverview {
+    /// Whether a cell is beyond its limit.
+    pub fn is_outside(&self, row: usize, column: usize) -> bool {
+        self.outside.get(row).and_then(|row| row.get(column)).copied().unwrap_or(false)
+    }
+
+    /// Columns before the first condition.
+    pub const HEADS: usize = HEADS.len();
+}
+
+/// A value of a cell, and whether it is beyond its limit.
+type Judged = (String, bool);
+
+impl Requirements {
+    /// The corrected model of every condition against the identified one; with the answers to flight records their shares inside too.
+    pub fn overview(
+        &self,
+        dataset: &Dataset,
+        histories: Option<&TimeHistories>,
+        limits: &OverviewLimits,
+    ) -> RequirementsOverview {
+        let ids: Vec<ConditionId> =
+            self.summary.iter().filter(|of| of.role == RequirementRole::Corrected).map(|of| of.condition).collect();
+        let columns = HEADS.map(str::to_owned).into_iter().chain(ids.iter().map(ToString::to_string));
+        let title =
+            "Corrected against identified models, condition by condition; the limits are the program's, of no standard";
+        let mut overview = RequirementsOverview { table: Table::new(title, columns), outside: Vec::new() };
+        let mut row = |heads: [String; 3], cell: &dyn Fn(ConditionId) -> Option<Judged>| {
+            let judged: Vec<Option<Judged>> = ids.iter().map(|id| cell(*id)).collect();
+            let is_outside = judged.iter().map(|cell| cell.as_ref().is_some_and(|(_, is_outside)| *is_outside));
+            overview.outside.push([false; HEADS.len()].into_iter().chain(is_outside).collect());
+            let cells = judged.into_iter().map(|cell| cell.map_or_else(|| "-".to_owned(), |(text, _)| text));
+            overview.table.row(heads.into_iter().chain(cells));
+        };
+        let about = |value: f64| format!("\u{b1}{}", limit(value));
+        let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+        let is_known = |pair: &Pair| self.bandwidth.iter().any(|of| of.pair == *pair && has_number(of));
+        for pair in dataset.measuring_pairs().marked().filter(is_known) {
+            let both = |id: ConditionId, value: fn(&BandwidthFinding) -> Option<f64>| {
+                let of = |role| self.bandwidth_of(id, pair, role).and_then(value);
+                of(RequirementRole::Corrected).zip(of(RequirementRole::Identified))
+            };
+            let name = dataset.pair_name(pair);
+            row([format!("{name}: bandwidth"), "%".to_owned(), about(100.0 * limits.bandwidth)], &|id| {
+                let (corrected, identified) = both(id, |of| of.omega_bw_rad_s)?;
+                let change = corrected / identified - 1.0;
+                Some((signed(100.0 * change, 0), change.abs() > limits.bandwidth))
+            });
+            row([format!("{name}: phase delay"), "ms".to_owned(), about(s_to_ms(limits.phase_delay_s))], &|id| {
+                let (corrected, identified) = both(id, |of| of.phase_delay_s)?;
+                let change_s = corrected - identified;
+                Some((signed(s_to_ms(change_s), 0), change_s.abs() > limits.phase_delay_s))
+            });
+        }
+        // Of tolerances those of what is measured itself.
+        for quantity in histories.into_iter().flat_map(TimeHistories::measured_quantities) {
+            let at_least = format!("\u{2265} {}", limit(100.0 * limits.share_inside));
+            row([format!("{quantity} inside"), "% of time".to_owned(), at_least], &|id| {
+                let share = histories?.share_inside(id, RequirementRole::Corrected, quantity)?;
+                Some((percent(Some(share)), share < limits.share_inside))
+            });
+        }
+        let of_modes = ["modes beyond tolerance", "of those with a tolerance", "0"];
+        row(of_modes.map(str::to_owned), &|id| self.modes_outside(id));
+        overview
+    }
+
+    /// How many modes of the corrected model are beyond their tolerance; none where no mode with a tolerance is determined.
+    fn modes_outside(&self, id: ConditionId) -> Option<Judged> {
+        let of_condition = self.modes.iter().filter(|of| of.condition == id);
+        // Gains and delays move no pole: without couplings the physics model's are those of the corrected one.
+        let verdicts: Vec<ModeVerdict> = of_condition.map(|of| of.corrected_verdict.unwrap_or(of.verdict)).collect();
+        let count = |verdict| verdicts.iter().filter(|of| **of == verdict).count();
+        let (within, outside) = (count(ModeVerdict::Within), count(ModeVerdict::Outside));
+        (within + outside > 0).then(|| (format!("{outside} of {}", within + outside), outside > 0))
+    }
+}
+
+/// A limit without the last digits of its unit.
+fn limit(value: f64) -> String {
+    number((1e6 * value).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Execution, KnownPoles, requirements_of};
+    use super::couplings_tests::EXAMPLE;
+    use super::*;
+
+    #[test]
+    fn what_is_beyond_its_limit_is_marked_and_nothing_else() {
+        let analysis = &EXAMPLE.analysis;
+        let dataset = &analysis.study.dataset;
+        let found = requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let usual = found.overview(dataset, None, &OverviewLimits::default());
+        let heads = RequirementsOverview::HEADS;
+        assert_eq!(usual.table.columns.len() - heads, analysis.conditions.len());
+        let row = usual.table.rows.iter().position(|row| row[0] == "LAT \u{2192} P: bandwidth").unwrap();
+        assert_eq!(usual.table.rows[row][1..heads], ["%", "\u{b1}10"]);
+        let pair = found.bandwidth.iter().find(|of| of.output == "P" && of.input == "LAT").unwrap().pair;
+        for (column, id) in usual.table.columns.iter().enumerate().skip(heads) {
+            let id = ConditionId(id.parse().unwrap());
+            let of = |role| found.bandwidth_of(id, pair, role).and_then(|of| of.omega_bw_rad_s);
+            let change =
+                of(RequirementRole::Corrected).zip(of(RequirementRole::Identified)).map(|(of, by)| of / by - 1.0);
+            let shown = usual.table.rows[row][column].replace('\u{2212}', "-").parse::<f64>().ok();
+            assert_eq!(shown, change.map(|change| (100.0 * change).round()), "{id}");
+            assert_eq!(usual.is_outside(row, column), change.is_some_and(|change| change.abs() > 0.1));
+        }
+        let strict = OverviewLimits { bandwidth: 1e-9, ..OverviewLimits::default() };
+        let strict = found.overview(dataset, None, &strict);
+        let known = (heads..strict.table.columns.len()).find(|column| strict.table.rows[row][*column] != "-").unwrap();
+        assert!(strict.is_outside(row, known) && !strict.is_outside(row, 0));
     }
 }

@@ -1,19 +1,11 @@
 //! The one table of settings: what each is called, where it stands in files and on a command line, what it may be, and how the
 //! window shows it. Undo, comparisons of decisions, refusals, the report, the command line and the window read it.
 
-use crate::correction::{GainBounds, GainObjective, GainSource};
-use crate::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use crate::fidelity::CostAverage;
+use crate::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use crate::response::LeadOrder;
-use crate::schedule::{ScheduleKind, ScheduledQuantity, SecondVariable};
+use crate::schedule::ScheduleKind;
 
-use super::{
-    Choice, Control, CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, Digits, Kind, PhaseCorrection, Place, Setting,
-    Settings, Study, Unit,
-};
-
-const PURE: Unit = Unit { file: "", shown: "", scale: 1.0 };
-const PERCENT: Unit = Unit { file: "", shown: "%", scale: 100.0 };
+use super::*;
 
 /// A row of name, key and option before what is special about it.
 const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
@@ -25,16 +17,12 @@ const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: K
         digits: Digits::Significant,
         applies: |_| true,
     };
-    Setting { name, key, option, help, unit: PURE, kind, control }
+    Setting { name, key, option, help, unit: Unit { file: "", shown: "", scale: 1.0 }, kind, control }
 }
 
 impl Setting {
     const fn unit(self, file: &'static str, shown: &'static str, scale: f64) -> Self {
         Self { unit: Unit { file, shown, scale }, ..self }
-    }
-
-    const fn percent(self) -> Self {
-        Self { unit: PERCENT, ..self }
     }
 
     /// Where its control stands, after which caption, under which accessible name.
@@ -215,7 +203,7 @@ pub static QUANTILE: Setting = row(
     "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
     real([0.0, 0.5], |of| of.quantile, |of, quantile| of.quantile = quantile),
 )
-.percent()
+.unit("", "%", 100.0)
 .at(Place::Beside, "bound quantile", "Bound quantile")
 .digits(0.1, Digits::Decimals(1));
 
@@ -313,7 +301,7 @@ pub static LEVEL: Setting = row(
     "Level of every error bar, interval and test",
     real([0.5, 0.999], |of| of.uncertainty.level, |of, level| of.uncertainty.level = level),
 )
-.percent()
+.unit("", "%", 100.0)
 .at(Place::Line, "Confidence level", "Confidence level")
 .digits(0.5, Digits::Decimals(1));
 

@@ -1,14 +1,9 @@
 //! What a row of the table of settings says, and what can be done with it: give it a value, refuse one, tell it, read it.
 
-use crate::correction::{GainBounds, GainObjective, GainSource};
-use crate::dataset::Band;
-use crate::fidelity::CostAverage;
 use crate::response::LeadOrder;
-use crate::schedule::{SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable};
-use crate::units::number;
+use crate::schedule::{SCHEDULE_KINDS, ScheduleKind};
 
-use super::setting::SETTINGS;
-use super::{CouplingCorrection, DelayFrom, Edit, EditRefusal, PhaseCorrection, Settings, Study};
+use super::*;
 
 /// One setting: a row of [`SETTINGS`].
 #[derive(Debug)]
@@ -141,8 +136,6 @@ pub enum Place {
     Beside,
     /// In the view of what it is about.
     Elsewhere,
-    /// Nowhere: files and command lines say it.
-    Hidden,
 }
 
 /// The value of a setting.

@@ -1,18 +1,14 @@
 //! Every setting that changes a result: the values, as files hold them. What each is called, may be and looks like stands in
 //! [`super::setting`].
 
-use std::fmt;
-
-use serde::{Deserialize, Serialize};
-
-use crate::correction::{GainBounds, GainObjective, GainSource, LeadSettings};
+use crate::correction::LeadSettings;
 use crate::couplings::CouplingKind;
 use crate::dataset::limits::MOST_PAIRS;
-use crate::dataset::{Band, Dataset, PairTable};
-use crate::fidelity::CostAverage;
 use crate::schedule::ScheduleSettings;
 use crate::uncertainty::UncertaintySettings;
 use crate::whole_number::whole;
+
+use super::*;
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
@@ -166,7 +162,7 @@ fn default_agreement_db() -> f64 {
     DEFAULT_AGREEMENT_DB
 }
 
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 

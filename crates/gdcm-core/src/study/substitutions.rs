@@ -1,20 +1,12 @@
 //! Other models of the bundles in place of the representatives, one at a time (M13.1).
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use crate::correction::{ChannelCorrection, Delta, GainSource};
-use crate::dataset::{BundleKind, Dynamics, Pair, PairTable};
-use crate::response::{FrequencyGrid, coherence_at, median, quantile};
+use crate::response::{coherence_at, quantile};
 use crate::uncertainty::{
-    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, Scalar,
-    ScalarTable, VarianceComponent,
+    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, ScalarTable,
+    VarianceComponent,
 };
 
-use super::{
-    Analysis, Cancelled, Compared, ConditionAnalysis, ConditionResponses, Execution, FittedCouplings, Mismatches,
-    Settings, Study,
-};
+use super::*;
 
 /// What came of the substitutions of one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +14,11 @@ pub struct ConditionSubstitutions {
     /// How the figures change.
     pub spread: ConditionSpread,
     /// Figures of each substitution, with the bundle and the place of the model that stands in; none where it could not be analysed.
-    pub substitutions: Vec<(BundleKind, usize, Option<Arc<Figures>>)>,
+    pub substitutions: Vec<Swap>,
 }
+
+/// A model in place of its representative, with the figures of the correction that it leads to.
+pub type Swap = (BundleKind, usize, Option<Arc<Figures>>);
 
 /// What substitutions are made of.
 #[derive(Clone, Copy)]
@@ -131,36 +126,32 @@ impl SubstitutionMemo {
         if self.key.as_ref() != Some(&key) {
             *self = Self { key: Some(key), kept: BTreeMap::new() };
         }
+        let of_bundle = |kind| substituting.others(kind).into_iter().map(move |model| (kind, model));
+        let swaps: Vec<(BundleKind, usize)> = BundleKind::BOTH.into_iter().flat_map(of_bundle).collect();
         let [physics, identified] = substituting.representatives();
-        let [trim, own] = BundleKind::BOTH.map(|kind| substituting.others(kind));
-        let pairs = trim.iter().map(|&a| [a, identified]).chain(own.iter().map(|&b| [physics, b]));
+        let models = |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
         // The mean over all pairs is no figure of the representatives: what changes are measured from is made too.
         let base =
             (substituting.study.settings.gain_source == GainSource::MeanOfPairs).then_some([physics, identified]);
-        let of = &substituting.analysis.comparison.delta.gain;
-        let pairs = pairs.chain(base);
-        let missing: Vec<[usize; 2]> = pairs.filter(|pair| !self.kept.contains_key(pair)).collect();
-        execution.step((trim.len() + own.len()).saturating_sub(missing.len()));
+        let wanted = swaps.iter().map(models).chain(base);
+        let missing: Vec<[usize; 2]> = wanted.filter(|pair| !self.kept.contains_key(pair)).collect();
+        execution.step(swaps.len().saturating_sub(missing.len()));
         let made = make(substituting, &missing, execution, optimum)?;
         self.kept.extend(missing.into_iter().zip(made));
         let kept = |pair: [usize; 2]| self.kept.get(&pair).cloned().flatten();
-        let by_trim: Vec<Option<Arc<Figures>>> = trim.iter().map(|&a| kept([a, identified])).collect();
-        let by_own: Vec<Option<Arc<Figures>>> = own.iter().map(|&b| kept([physics, b])).collect();
-        let base = match substituting.study.settings.gain_source {
-            GainSource::Representatives => SubstitutedOptimum::of(substituting.analysis).figures(),
-            GainSource::MeanOfPairs => match kept([physics, identified]) {
+        let substitutions: Vec<_> = swaps.iter().map(|swap| (swap.0, swap.1, kept(models(swap)))).collect();
+        let figures = |kind| -> Vec<Option<&Figures>> {
+            substitutions.iter().filter(|of| of.0 == kind).map(|of| of.2.as_deref()).collect()
+        };
+        let base = match base {
+            None => SubstitutedOptimum::of(substituting.analysis).figures(),
+            Some(pair) => match kept(pair) {
                 Some(base) => Figures::clone(&base),
-                None => ScalarTable::from_fn(of.outputs(), of.inputs(), |_| None),
+                None => SubstitutedOptimum::of(substituting.analysis).figures().map(|_, _| None),
             },
         };
-        let [of_trim, of_own] =
-            [&by_trim, &by_own].map(|substitutions| substitutions.iter().map(Option::as_deref).collect::<Vec<_>>());
-        let spread = ConditionSpread::of(&base, &of_trim, &of_own);
-        let named = |kind, models: Vec<usize>, substitutions: Vec<_>| {
-            models.into_iter().zip(substitutions).map(move |(model, figures)| (kind, model, figures))
-        };
-        let substitutions = named(BundleKind::Physics, trim, by_trim).chain(named(BundleKind::Identified, own, by_own));
-        Ok(ConditionSubstitutions { spread, substitutions: substitutions.collect() })
+        let spread = ConditionSpread::of(&base, &figures(BundleKind::Physics), &figures(BundleKind::Identified));
+        Ok(ConditionSubstitutions { spread, substitutions })
     }
 }
 
@@ -269,7 +260,7 @@ fn told_by_coherence(
     result: &ConditionAnalysis,
 ) -> Option<PairTable<Option<(CoherenceError, f64)>>> {
     let settings = &analysis.study.settings;
-    let identified = &result.condition.bundle(BundleKind::Identified)[result.comparison.identified.model];
+    let identified = result.representative_model(BundleKind::Identified);
     let (Dynamics::Measured(response), Some(threshold)) = (&identified.dynamics, settings.coherence_threshold) else {
         return None;
     };
@@ -285,7 +276,7 @@ fn told_by_coherence(
 /// The error of each response of the identified representative that its own band tells: medians over the band of comparison. Its
 /// deviations are taken as known.
 fn told_by_band(analysis: &Analysis, result: &ConditionAnalysis) -> Option<PairTable<Option<CoherenceError>>> {
-    let identified = &result.condition.bundle(BundleKind::Identified)[result.comparison.identified.model];
+    let identified = result.representative_model(BundleKind::Identified);
     let bands = identified.bands.as_ref()?;
     let band = analysis.study.settings.band;
     let inside = |omega: &f64| (band.min()..=band.max()).contains(omega);

@@ -1,10 +1,8 @@
 //! A table of what was found, to be read, copied and saved: the same texts wherever it goes.
 
-use crate::dataset::Dataset;
-use crate::uncertainty::{Scalar, VarianceDecomposition};
-use crate::units::signed;
+use crate::uncertainty::VarianceDecomposition;
 
-use super::{AirspeedDifference, Analysis, Uncertainty};
+use super::*;
 
 /// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table can stand alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -7,23 +7,12 @@
 //! 3  each row of the table of tolerances whose output and unit are there: share inside, largest excess, correlation
 //! ```
 
-use std::collections::BTreeMap;
-use std::sync::Arc;
-
-use serde::Serialize;
-
-use crate::dataset::{Channel, ConditionId, Pair, PairTable, StateSpace};
-use crate::executor::{Executor, Sequential};
-use crate::identification::{
-    FlightRecord, Preparation, Segment, Validation, ValidationSettings, ValidationWindow, segments_of, validate,
-};
+use crate::dataset::Channel;
+use crate::identification::{Segment, ValidationSettings, ValidationWindow};
 use crate::records::LaidOutRecord;
-use crate::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck, ToleranceTable};
+use crate::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck};
 
-use super::{
-    Analysis, Cancelled, ConditionAnalysis, Engine, Execution, Job, MissingFinding, Progress, RequirementRole,
-    RoleModelError,
-};
+use super::*;
 
 /// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
 pub(super) const LEAST_PIECE_S: f64 = 2.0;
@@ -31,18 +20,12 @@ pub(super) const LEAST_PIECE_S: f64 = 2.0;
 const WHAT: &str = "time histories";
 
 /// A flight record that models are compared with.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
     /// Its samples, in the units of the dataset's channels.
-    pub flight: Arc<FlightRecord>,
+    pub flight: Shared<FlightRecord>,
     /// Whether the identified models were kept from it.
     pub held_out: bool,
-}
-
-impl PartialEq for HistoryRecord {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.flight, &other.flight) && self.held_out == other.held_out
-    }
 }
 
 /// The flight records of a condition, and how they are prepared.
@@ -65,7 +48,7 @@ impl HistoryRecords {
     ) -> Self {
         let used = records.into_iter().filter_map(|record| {
             let flight = Arc::clone(record.used_flight()?);
-            Some(HistoryRecord { flight, held_out: record.guess.held_out })
+            Some(HistoryRecord { flight: flight.into(), held_out: record.guess.held_out })
         });
         Self { condition, records: used.collect(), preparation }
     }
@@ -77,21 +60,14 @@ impl HistoryRecords {
 }
 
 /// What is asked for: records against an analysis.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// The records, condition by condition.
     pub records: Vec<HistoryRecords>,
     /// The tolerances.
     pub tolerances: ToleranceTable,
-}
-
-impl PartialEq for TimeHistoriesJob {
-    fn eq(&self, other: &Self) -> bool {
-        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
-        same_analysis && self.records == other.records && self.tolerances == other.tolerances
-    }
 }
 
 impl Job for TimeHistoriesJob {
@@ -304,8 +280,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
     if records.iter().all(|of| of.records.is_empty()) {
         return vec![missing_of(None, "no flight record was given".to_owned())];
     }
-    let ids = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
-    let without = ids.filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
+    let without = analysis.study.dataset.ids().filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
     without.map(|id| missing_of(Some(id), "no flight record of it was given".to_owned())).collect()
 }
 
@@ -416,6 +391,8 @@ impl<'a> Comparer<'a> {
         let rms = RmsCost::of(&validation.windows, self.outputs);
         let moved = self.moved_input(segments);
         let rows = self.rows.iter().map(|row| self.against(row, &validation.windows, moved));
+        let theil = self.outputs.iter().zip(&validation.theil);
+        let theil = theil.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?)));
         let length_s = |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
         Ok(HistoryFinding {
             condition: result.condition.id(),
@@ -434,14 +411,9 @@ impl<'a> Comparer<'a> {
                 .flat_map(|cost| cost.left_out)
                 .map(|at| self.outputs[at].name.clone())
                 .collect(),
-            theil: self.theil(&validation),
+            theil: theil.collect(),
             tolerances: rows.collect::<Result<_, _>>()?,
         })
-    }
-
-    fn theil(&self, validation: &Validation) -> BTreeMap<String, f64> {
-        let named = self.outputs.iter().zip(&validation.theil);
-        named.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?))).collect()
     }
 
     /// One row of the table over all windows of a record.
@@ -468,5 +440,226 @@ impl<'a> Comparer<'a> {
             on_axis,
             trend: Trend::of(correlation, on_axis),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use nalgebra::{DMatrix, DVector};
+
+    use super::couplings_tests::{COUPLED, EXAMPLE};
+    use super::*;
+    use crate::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
+    use crate::executor::Sequential;
+    use crate::identification::{FirstOrderHold, FlightRecord, Preparation, segments_of, validate};
+    use crate::requirements::{Tolerance, ToleranceTable};
+    use crate::response::{FrequencyGrid, FrequencyResponse};
+
+    const CONDITION: ConditionId = ConditionId(3);
+    const SAMPLE_TIME_S: f64 = 0.02;
+
+    /// A sweep of the first input alone, `samples` long, that the model of a role answers to.
+    fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
+        let model = analysis.role_model(analysis.condition(CONDITION).unwrap(), role).unwrap();
+        let time_s: Vec<f64> = (0..samples).map(|n| SAMPLE_TIME_S * n as f64).collect();
+        let sweep = |t: f64| 5.0 * (t * (0.5 + 0.05 * t)).sin();
+        let inputs =
+            DMatrix::from_fn(samples, model.inputs(), |n, input| if input == 0 { sweep(time_s[n]) } else { 0.0 });
+        let held = FirstOrderHold::of(&model, SAMPLE_TIME_S).unwrap();
+        let outputs = held.simulate(&DVector::zeros(model.order()), &inputs);
+        FlightRecord { name: "sweep".into(), time_s, inputs, outputs }
+    }
+
+    fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
+        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+        let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+        let record = HistoryRecord { flight: Arc::new(flight).into(), held_out: true };
+        let preparation = Preparation { keep_frozen: true, ..Preparation::of(&inputs, &outputs) };
+        vec![HistoryRecords { condition: CONDITION, records: vec![record], preparation }]
+    }
+
+    fn histories(analysis: &Analysis, flight: FlightRecord, table: &ToleranceTable) -> TimeHistories {
+        time_histories_of(analysis, &records(analysis, flight), table, &Execution::sequential()).unwrap()
+    }
+
+    #[test]
+    fn the_model_that_flew_is_inside_and_the_physics_model_is_not() {
+        let analysis = &EXAMPLE.analysis;
+        let flight = flown(analysis, RequirementRole::Identified, 1500);
+        let found = histories(analysis, flight, &ToleranceTable::default());
+        assert_eq!(found.records.len(), 4, "{:?}", found.missing);
+        let of_role = |role| found.of_role(CONDITION, role).next().unwrap();
+        let identified = of_role(RequirementRole::Identified);
+        assert_eq!((identified.samples, identified.moved_input.as_deref()), (1500, Some("LON")));
+        for of in &identified.tolerances {
+            assert!(of.share_inside == 1.0 && of.largest_excess < 0.0, "{of:?}");
+            let trend = (of.on_axis == Some(false)).then_some(Trend::Correct);
+            assert!(of.trend == trend && of.correlation.unwrap() > 0.999_999, "{of:?}");
+        }
+        // It is its own record, but for the least squares of the initial state.
+        assert!(identified.j_rms.unwrap() < 1e-6 && identified.theil["Q"] < 1e-7, "{identified:?}");
+        let [physics, corrected] = [RequirementRole::Physics, RequirementRole::Corrected].map(of_role);
+        assert!(physics.tolerances.iter().any(|of| of.share_inside < 1.0 && of.largest_excess > 0.0));
+        assert!(corrected.j_rms.unwrap() < physics.j_rms.unwrap(), "a correction brings the model nearer to flight");
+        let pitch = identified.tolerances.iter().find(|of| of.quantity == "pitch rate").unwrap();
+        assert_eq!((pitch.on_axis, pitch.trend), (Some(true), None));
+    }
+
+    #[test]
+    fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
+        let analysis = &EXAMPLE.analysis;
+        let flights = [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
+        let mut given = records(analysis, flights[0].clone());
+        given[0].records.push(HistoryRecord { flight: Arc::new(flights[1].clone()).into(), held_out: false });
+        let table = ToleranceTable::default();
+        let found = time_histories_of(analysis, &given, &table, &Execution::sequential()).unwrap();
+        let role = RequirementRole::Physics;
+        let [short, long] = [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
+        let share = found.share_inside(CONDITION, role, &short.quantity).unwrap();
+        assert!((share - (short.share_inside + 2.0 * long.share_inside) / 3.0).abs() < 1e-12);
+        assert_eq!(found.conditions(), [(CONDITION, 2)]);
+        let shown = found.share_table();
+        assert_eq!(shown.rows[2][..3], ["3", "2", "pitch rate"].map(str::to_owned));
+        // Rounded down: what is not wholly inside is never 100.
+        assert_eq!(shown.rows[2][3].parse::<f64>().unwrap(), (1e3 * share).floor() / 10.0);
+        assert_eq!(shown.rows[2][6], "100.0");
+        let squares = |n: usize| found.of_role(CONDITION, role).nth(n).unwrap().j_rms.unwrap().powi(2);
+        let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
+        assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
+        assert_eq!(found.cost_table().rows[0][3], format!("{rms:.2}"));
+        let of_records = found.record_table(CONDITION);
+        let is_left = |of: &ToleranceFinding| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite);
+        let first = |n: usize| RequirementRole::ALL.map(|role| found.of_role(CONDITION, role).nth(n).unwrap());
+        let rows = found.records[0].tolerances.len();
+        let left = |n: usize| (0..rows).filter(|row| first(n).iter().any(|of| is_left(&of.tolerances[*row]))).count();
+        let named = |name: &str| of_records.rows.iter().filter(|row| row[0] == name).count();
+        assert_eq!([named("sweep (held out)"), named("sweep")], [left(0), left(1)]);
+        assert!(of_records.title.contains(&format!("{} of {} rows", 2 * rows - left(0) - left(1), 2 * rows)));
+        let row = of_records.rows.iter().find(|row| row[0] == "sweep" && row[1] == long.quantity).unwrap();
+        assert!(
+            long.largest_excess > 0.0 && row[2].contains(&format!("at {:.1} s", long.largest_excess_at_s)),
+            "{row:?}"
+        );
+        assert_eq!(row[5], "100.0", "the model that flew is always inside");
+    }
+
+    #[test]
+    fn what_is_not_compared_is_said() {
+        let analysis = &EXAMPLE.analysis;
+        let words = |found: &TimeHistories| found.missing.iter().map(|of| of.why.clone()).collect::<Vec<_>>();
+        let table = ToleranceTable::default();
+        let none = time_histories_of(analysis, &[], &table, &Execution::sequential()).unwrap();
+        assert_eq!((words(&none), none.records.len()), (vec!["no flight record was given".to_owned()], 0));
+
+        let short = flown(analysis, RequirementRole::Identified, 50);
+        let found = histories(analysis, short, &table);
+        assert!(found.records.is_empty());
+        assert!(
+            words(&found)
+                .iter()
+                .any(|why| why.starts_with("record \"sweep\": ") && why.contains("2.0 s are the least"))
+        );
+        let others = found.missing.iter().filter(|of| of.why == "no flight record of it was given").count();
+        assert_eq!(others, analysis.conditions.len() - 1);
+
+        let row = Tolerance { channel: "T".into(), quantity: "thrust".into(), ..table.rows()[0].clone() };
+        let other = ToleranceTable::new("mine", vec![row, table.rows()[2].clone()]).unwrap();
+        let found = histories(analysis, flown(analysis, RequirementRole::Identified, 600), &other);
+        assert!(words(&found).contains(&"\"thrust\" is not compared: there is no output \"T\"".to_owned()));
+        assert!(found.records.iter().all(|of| of.tolerances.len() == 1), "the rest is compared");
+    }
+
+    #[test]
+    fn a_record_that_is_not_finite_is_refused_with_its_name() {
+        let analysis = &EXAMPLE.analysis;
+        let mut flight = flown(analysis, RequirementRole::Identified, 600);
+        flight.outputs.column_mut(1).fill(f64::NAN);
+        let found = histories(analysis, flight, &ToleranceTable::default());
+        assert!(found.records.is_empty());
+        assert!(found.missing.iter().any(|of| of.condition == Some(CONDITION) && of.why.contains("\"sweep\"")));
+    }
+
+    #[test]
+    fn a_corrected_model_answers_with_the_couplings_of_the_study() {
+        let analysis = &COUPLED.1;
+        let result = analysis.condition(CONDITION).unwrap();
+        let physics = &result.condition.bundle(BundleKind::Physics)[result.comparison.physics.model];
+        let grid = FrequencyGrid::logarithmic(analysis.study.settings.band, 20);
+        let model = analysis.role_model(result, RequirementRole::Corrected).unwrap();
+        let answered = FrequencyResponse::of(&Dynamics::StateSpace(model), &grid);
+        let plain = FrequencyResponse::of(&physics.dynamics, &grid);
+        let coupled = result.coupled_response(&plain);
+        let pair = Pair::new(1, 0);
+        let correction = result.correction.on(pair).unwrap();
+        for (k, omega) in grid.omega().iter().enumerate() {
+            let expected = coupled.curve(pair)[k] * correction.at(*omega);
+            // What a Pade approximant of delays of tens of ms lags too little in the band.
+            assert!((answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(), "{omega}");
+        }
+        let as_it_is = analysis.role_model(result, RequirementRole::Physics).unwrap();
+        let as_it_is = FrequencyResponse::of(&Dynamics::StateSpace(as_it_is), &grid);
+        assert!((as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm() < 1e-12 * plain.curve(pair)[0].norm());
+    }
+
+    #[test]
+    fn a_job_is_stopped_and_is_known_by_what_it_depends_on() {
+        struct Stopped;
+        impl Progress for Stopped {
+            fn cancelled(&self) -> bool {
+                true
+            }
+            fn advanced(&self, _: usize, _: usize) {}
+        }
+        let analysis = Arc::new(EXAMPLE.analysis.clone());
+        let records = records(&analysis, flown(&analysis, RequirementRole::Identified, 600));
+        let job = TimeHistoriesJob { analysis: analysis.into(), records, tolerances: ToleranceTable::default() };
+        let mut executor: Box<dyn crate::executor::Executor> = Box::new(Sequential);
+        assert_eq!(job.run(&mut executor, &Stopped).unwrap_err(), Cancelled);
+        assert_eq!(job.run(&mut executor, &Unobserved).unwrap().records.len(), 4);
+        assert_eq!(job, job.clone());
+        let tolerances = ToleranceTable::new("mine", job.tolerances.rows()[..1].to_vec()).unwrap();
+        assert_ne!(TimeHistoriesJob { tolerances, ..job.clone() }, job);
+        assert_ne!(TimeHistoriesJob { records: Vec::new(), ..job.clone() }, job);
+    }
+
+    #[test]
+    fn the_models_of_a_condition_are_compared_in_the_same_windows() {
+        let analysis = &EXAMPLE.analysis;
+        let flight = flown(analysis, RequirementRole::Identified, 1500);
+        let segments = segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
+        let result = analysis.condition(CONDITION).unwrap();
+        let slow = analysis.role_model(result, RequirementRole::Physics).unwrap();
+        // A mode that grows e-fold in 1 s is compared over 3 s.
+        let fast = StateSpace::new(
+            slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
+            slow.b().clone(),
+            slow.c().clone(),
+            slow.d().clone(),
+        )
+        .unwrap();
+        let alone = common_windows([&slow], &segments);
+        let both = common_windows([&slow, &fast], &segments);
+        assert!(alone.longest_window_s > 3.5 && (both.longest_window_s - 3.0).abs() < 1e-6, "{alone:?} {both:?}");
+        let windows = |model: &StateSpace| -> Vec<(f64, usize)> {
+            let found = validate(model, &segments, &both, &Sequential).unwrap();
+            found.windows.iter().map(|window| (window.start_s, window.measured.nrows())).collect()
+        };
+        assert_eq!(windows(&slow), windows(&fast));
+        // One that diverges too fast to be compared at all shortens nobody's.
+        let hopeless = StateSpace::new(
+            slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
+            slow.b().clone(),
+            slow.c().clone(),
+            slow.d().clone(),
+        )
+        .unwrap();
+        assert_eq!(common_windows([&slow, &hopeless], &segments), alone);
+    }
+
+    /// Greatest real part of the poles \[rad/s\].
+    fn fastest(model: &StateSpace) -> f64 {
+        model.a().complex_eigenvalues().iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max)
     }
 }

@@ -1,14 +1,6 @@
 //! Time histories within tolerances, as tables (M17.2).
 
-use std::collections::BTreeSet;
-
-use crate::dataset::ConditionId;
-use crate::units::telling;
-
-use super::{HistoryFinding, RequirementRole, Table, TimeHistories, ToleranceFinding, Trend};
-
-/// Samples inside, and all of them.
-type Counted = (f64, f64);
+use super::*;
 
 impl TimeHistories {
     /// The conditions that have records, each with their number.
@@ -26,22 +18,27 @@ impl TimeHistories {
 
     /// Share of the samples of all records of a condition that are inside a tolerance, 0 to 1.
     pub fn share_inside(&self, condition: ConditionId, role: RequirementRole, quantity: &str) -> Option<f64> {
-        let counted = self.of_role(condition, role).filter_map(|finding| {
-            let of = finding.tolerances.iter().find(|of| of.quantity == quantity)?;
-            Some((of.share_inside * finding.samples as f64, finding.samples as f64))
-        });
-        let (inside, samples): Counted = counted.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
-        (samples > 0.0).then(|| inside / samples)
+        let share = |finding: &HistoryFinding| {
+            finding.tolerances.iter().find(|of| of.quantity == quantity).map(|of| of.share_inside)
+        };
+        self.mean(condition, role, share)
     }
 
     /// `J_rms` of all records of a condition: the root of the mean square over their samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
-        let squares = self.of_role(condition, role).filter_map(|finding| {
-            let samples = finding.samples as f64;
-            Some((finding.j_rms?.powi(2) * samples, samples))
-        });
-        let (squares, samples): Counted = squares.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
-        (samples > 0.0).then(|| (squares / samples).sqrt())
+        self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2))).map(f64::sqrt)
+    }
+
+    /// The mean of what some records of a condition have, each by its samples.
+    fn mean(
+        &self,
+        condition: ConditionId,
+        role: RequirementRole,
+        value: impl Fn(&HistoryFinding) -> Option<f64>,
+    ) -> Option<f64> {
+        let known = self.of_role(condition, role).filter_map(|of| Some((value(of)?, of.samples as f64)));
+        let sums = known.fold([0.0, 0.0], |[sum, all], (value, samples)| [sum + value * samples, all + samples]);
+        (sums[1] > 0.0).then(|| sums[0] / sums[1])
     }
 
     /// The rows of the table of tolerances that were applied, in its order.
@@ -75,12 +72,7 @@ impl TimeHistories {
 
     /// Theil's coefficient of an output over all records of a condition: their mean, each by its samples.
     pub fn theil(&self, condition: ConditionId, role: RequirementRole, output: &str) -> Option<f64> {
-        let found = self.of_role(condition, role).filter_map(|finding| {
-            let samples = finding.samples as f64;
-            Some((finding.theil.get(output)? * samples, samples))
-        });
-        let (sum, samples): Counted = found.fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
-        (samples > 0.0).then(|| sum / samples)
+        self.mean(condition, role, |finding| finding.theil.get(output).copied())
     }
 
     /// The outputs that have a coefficient of Theil.

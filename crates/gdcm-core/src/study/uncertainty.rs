@@ -1,18 +1,14 @@
 //! How sure the figures of an analysis are, what their scatter over the conditions is made of, and what follows for the schedule
 //! (M13).
 
-use std::collections::BTreeMap;
-use std::fmt;
-use std::sync::Arc;
-
-use crate::dataset::{Condition, ConditionId, Dataset, FlightState, Pair, PairTable};
-use crate::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
+use crate::dataset::FlightState;
+use crate::schedule::airspeed_indicators;
 use crate::uncertainty::{
-    BandWidths, Bar, BarSource, Design, Difference, Scalar, ScalarTable, ScheduleBand, SecondVariableDesign,
+    BandWidths, Bar, BarSource, Design, Difference, ScalarTable, ScheduleBand, SecondVariableDesign,
     SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars, holm,
 };
 
-use super::{Analysis, ConditionAnalysis, ConditionSubstitutions, bar_source, left_in_band};
+use super::*;
 
 /// How sure the figures of an analysis are.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,15 +126,11 @@ impl Uncertainty {
         let sources: Vec<BarSource<'_>> =
             analysed.iter().map(|(result, substitutions)| bar_source(analysis, result, substitutions)).collect();
         let made = bars(&sources, study.settings.uncertainty.prior_degrees);
-        let of_condition = |((result, substitutions), bars): (
-            &(&ConditionAnalysis, &ConditionSubstitutions),
-            ScalarTable<Option<Bar>>,
-        )| {
-            let substitutions = ConditionSubstitutions::clone(substitutions);
-            (result.condition.id(), ConditionUncertainty { bars, left_in_band: left_in_band(result), substitutions })
-        };
-        let conditions: BTreeMap<ConditionId, ConditionUncertainty> =
-            analysed.iter().zip(made).map(of_condition).collect();
+        let conditions = analysed.iter().zip(made).map(|(&(result, substitutions), bars)| {
+            let (left_in_band, substitutions) = (left_in_band(result), substitutions.clone());
+            (result.condition.id(), ConditionUncertainty { bars, left_in_band, substitutions })
+        });
+        let conditions: BTreeMap<ConditionId, ConditionUncertainty> = conditions.collect();
         let scheduled = analysis.scheduled();
         let of_schedule: Vec<&ConditionUncertainty> = scheduled.iter().filter_map(|id| conditions.get(id)).collect();
         let schedule = analysis.schedule.as_ref().ok().filter(|_| of_schedule.len() == scheduled.len());
@@ -319,15 +311,9 @@ pub(super) fn differences(
                 let (a, b) = (airspeed(first), airspeed(second));
                 let bars = of_first.bars[Scalar::NetGain(pair)].zip(of_second.bars[Scalar::NetGain(pair)]);
                 if let Some((one, other)) = bars.filter(|_| (a - b).abs() <= EQUAL_AIRSPEED_KT) {
-                    let conditions = [first.id(), second.id()];
+                    let (conditions, airspeed_kt) = ([first.id(), second.id()], 0.5 * (a + b));
                     let difference = Difference::of(&one, &other);
-                    found.push(AirspeedDifference {
-                        pair,
-                        conditions,
-                        airspeed_kt: 0.5 * (a + b),
-                        difference,
-                        p_holm: None,
-                    });
+                    found.push(AirspeedDifference { pair, conditions, airspeed_kt, difference, p_holm: None });
                 }
             }
         }

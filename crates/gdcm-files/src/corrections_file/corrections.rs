@@ -10,7 +10,7 @@ use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, 
 use gdcm_core::fidelity::Cost;
 use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
 use gdcm_core::study::{
-    Analysis, Assessed, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment, lead_cautions,
+    Analysis, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment, lead_cautions,
 };
 use serde_json::{Map, Value, json};
 
@@ -36,8 +36,8 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         }
         match analysis.assessment.get(&id) {
             None => {}
-            Some(Assessed::LeftOut { why }) => left_out.push(without(id, why)),
-            Some(Assessed::Nominal(changes)) => assessed.push(json!({
+            Some(Err(why)) => left_out.push(without(id, why)),
+            Some(Ok(changes)) => assessed.push(json!({
                 "id": id.0,
                 "model": condition.bundle(BundleKind::Physics)[condition.nominal()].name,
                 "dJ": rows(changes, |change| change.total()),

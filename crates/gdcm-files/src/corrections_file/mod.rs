@@ -11,7 +11,7 @@ use gdcm_core::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_core::dataset::{Condition, ConditionId, Pair};
 use gdcm_core::response::LeadFilter;
 use gdcm_core::schedule::CostChange;
-use gdcm_core::study::{Analysis, Assessed, ConditionAnalysis};
+use gdcm_core::study::{Analysis, ConditionAnalysis};
 use gdcm_core::uncertainty::{Bar, Scalar, VarianceComponent};
 
 use crate::figure::all_channels;
@@ -266,15 +266,12 @@ impl ChannelRow<'_> {
 
 impl ResponseRow<'_> {
     fn change(&self) -> Option<CostChange> {
-        match self.found.analysis.assessment.get(&self.found.condition.id())? {
-            Assessed::Nominal(changes) => changes[self.pair],
-            Assessed::LeftOut { .. } => None,
-        }
+        self.found.analysis.assessment.get(&self.found.condition.id())?.as_ref().ok()?[self.pair]
     }
 
     fn left_out(&self) -> String {
         match self.found.analysis.assessment.get(&self.found.condition.id()) {
-            Some(Assessed::LeftOut { why }) => why.clone(),
+            Some(Err(why)) => why.clone(),
             _ => String::new(),
         }
     }

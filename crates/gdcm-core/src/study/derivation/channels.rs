@@ -1,11 +1,6 @@
 //! How channel gains and delays, net gains and delays, and objectives were computed (M8, M9, M11).
 
-use crate::correction::{Channel, Problem, Quantity, Solution};
-use crate::dataset::Pair;
-use crate::study::servo_words;
-use crate::units::{number, s_to_ms};
-
-use super::{Context, Derivation, digits, gain_objective_equation};
+use super::*;
 
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let correction = &context.result.correction;

@@ -1,12 +1,9 @@
 //! How scores and discontinuity ratios were computed (M5).
 
-use crate::correction::{Channel, ChannelCorrection};
-use crate::dataset::{BundleKind, Dynamics, Model, ModelId, Origin, Pair};
-use crate::fidelity::{Cost, CostAverage, PHASE_WEIGHT, SUGGESTION_RATIO};
-use crate::study::{AssessedModel, AssessmentChoice, assessed};
-use crate::units::{s_to_ms, signed};
+use crate::dataset::Origin;
+use crate::fidelity::{PHASE_WEIGHT, SUGGESTION_RATIO};
 
-use super::{Context, Derivation, average_word, counted_words, digits, median_words};
+use super::*;
 
 /// Terms of a sum that are written out.
 const MOST_TERMS: usize = 8;
@@ -123,27 +120,18 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     format!("k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms", digits(gain), digits(delay_ms))
 }
 
-pub(super) fn before(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let cost = context.result.cost[pair]?.uncorrected;
-    let average = context.settings().cost_average;
+/// J of a response before the correction, or after it.
+pub(super) fn cost(context: &Context<'_>, pair: Pair, is_corrected: bool) -> Option<Derivation> {
+    let (change, average) = (context.result.cost[pair]?, context.settings().cost_average);
+    let (cost, when, of) = match is_corrected {
+        false => (change.uncorrected, "before", ""),
+        true => (change.corrected, "after", "; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))"),
+    };
+    let correction = is_corrected.then(|| correction_words(context, pair, &context.result.correction));
     Some(Derivation {
-        title: context.title(&format!("J of {} before the correction", context.pair(pair))),
-        equation: equation(average),
-        with_numbers: steps("J", cost, average),
-        rests_on: context.models_and_frequencies(context.mismatch(pair)?),
-        section: SECTION,
-        value: cost.total(),
-    })
-}
-
-pub(super) fn after(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
-    let cost = context.result.cost[pair]?.corrected;
-    let average = context.settings().cost_average;
-    let correction = correction_words(context, pair, &context.result.correction);
-    Some(Derivation {
-        title: context.title(&format!("J of {} after the correction", context.pair(pair))),
-        equation: format!("{}; of H_sim · k_o k_i e^(−jω(τ_o + τ_i))", equation(average)),
-        with_numbers: [vec![correction], steps("J", cost, average)].concat(),
+        title: context.title(&format!("J of {} {when} the correction", context.pair(pair))),
+        equation: format!("{}{of}", equation(average)),
+        with_numbers: correction.into_iter().chain(steps("J", cost, average)).collect(),
         rests_on: context.models_and_frequencies(context.mismatch(pair)?),
         section: SECTION,
         value: cost.total(),

@@ -1,14 +1,10 @@
 //! How G, D and the bounds were computed (M6, M7).
 
-use crate::correction::{Channel, GainSource};
-use crate::dataset::{BundleKind, ConditionId, Pair};
-use crate::fidelity::Mismatch;
-use crate::schedule::{Regression, Schedule, ScheduledQuantity};
-use crate::study::{Analysis, ConditionSubstitutions, reports_error, takes_reported_error};
-use crate::uncertainty::{Bar, Scalar, VarianceComponent};
-use crate::units::{db_to_ratio, number, s_to_ms};
+use crate::schedule::Regression;
+use crate::uncertainty::{Bar, VarianceComponent};
+use crate::units::db_to_ratio;
 
-use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
+use super::*;
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
@@ -32,82 +28,59 @@ fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
-    if context.settings().gain_source == GainSource::MeanOfPairs && context.result.compensated.is_none() {
-        return Some(mean_gain(context, pair, value));
-    }
+    let is_mean = context.settings().gain_source == GainSource::MeanOfPairs && context.result.compensated.is_none();
     let (equation, section) = match context.result.compensated {
+        _ if is_mean => {
+            ("G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models", "M6, eq. (5)")
+        }
         None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
         Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
+    };
+    let (step, rests_on) = if is_mean {
+        let kept = |kind| context.result.representative(kind).scores.iter().flatten().count();
+        let [physics, identified] = BundleKind::BOTH.map(kept);
+        let models = format!("{physics} physics and {identified} identified models that are kept");
+        ("G".to_owned(), vec![models, context.band()])
+    } else {
+        let step = format!("G = {}", middle_words(mismatch, &ratios(mismatch)));
+        (step, context.models_and_frequencies(mismatch))
     };
     Some(Derivation {
         title: context.title(&format!("G of {}", context.pair(pair))),
         equation: equation.to_owned(),
-        with_numbers: vec![format!("G = {} = {}", middle_words(mismatch, &ratios(mismatch)), digits(value))],
-        rests_on: context.models_and_frequencies(mismatch),
+        with_numbers: vec![format!("{step} = {}", digits(value))],
+        rests_on,
         section,
         value,
     })
 }
 
-/// G as the mean over every pair of a kept physics and a kept identified model.
-fn mean_gain(context: &Context<'_>, pair: Pair, value: f64) -> Derivation {
-    let kept = |kind| context.result.representative(kind).scores.iter().flatten().count();
-    let (physics, identified) = (kept(BundleKind::Physics), kept(BundleKind::Identified));
-    Derivation {
-        title: context.title(&format!("G of {}", context.pair(pair))),
-        equation: "G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models".to_owned(),
-        with_numbers: vec![format!("G = {}", digits(value))],
-        rests_on: vec![format!("{physics} physics and {identified} identified models that are kept"), context.band()],
-        section: "M6, eq. (5)",
-        value,
-    }
-}
-
 pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = s_to_ms(context.result.wanted_delay_s(pair)?);
     let mismatch = context.mismatch(pair)?;
-    if context.result.asks_band_delays() {
-        return Some(band_delay(context, pair, mismatch, value));
-    }
     let mut rests_on = context.models_and_frequencies(mismatch);
-    if mismatch.leaves_half_a_turn() {
-        rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
-    }
+    let (equation, step, section) = if context.result.asks_band_delays() {
+        // The straight line of least squares through the missing phase.
+        let (omega, phase) = (mismatch.omega(context.omega()), mismatch.phase_difference(context.omega()));
+        let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
+        let sum = |of: &[f64]| (0..omega.len()).map(|place| weight(place) * (omega[place] * of[place])).sum::<f64>();
+        let step = format!("{} rad²/s / {} rad²/s²", digits(sum(&phase)), digits(sum(omega)));
+        ("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²", step, "M15.2")
+    } else {
+        if mismatch.leaves_half_a_turn() {
+            rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
+        }
+        let step = middle_words(mismatch, &delays_ms(mismatch, context.omega()));
+        ("D = median_ω Δφ(H_sim, H_ref) / ω", step, "M6, eq. (9)")
+    };
     Some(Derivation {
         title: context.title(&format!("D of {}", context.pair(pair))),
-        equation: "D = median_ω Δφ(H_sim, H_ref) / ω".to_owned(),
-        with_numbers: vec![format!(
-            "D = {} = {} ms",
-            middle_words(mismatch, &delays_ms(mismatch, context.omega())),
-            digits(value)
-        )],
+        equation: equation.to_owned(),
+        with_numbers: vec![format!("D = {step} = {} ms", digits(value))],
         rests_on,
-        section: "M6, eq. (9)",
+        section,
         value,
     })
-}
-
-/// The straight line of least squares through the missing phase (M15.2).
-fn band_delay(context: &Context<'_>, pair: Pair, mismatch: &Mismatch, value: f64) -> Derivation {
-    let omega = mismatch.omega(context.omega());
-    let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
-    let sum = |of: &dyn Fn(usize) -> f64| (0..omega.len()).map(|place| weight(place) * of(place)).sum::<f64>();
-    let phase = mismatch.phase_difference(context.omega());
-    let moment = sum(&|place| omega[place] * phase[place]);
-    let square = sum(&|place| omega[place] * omega[place]);
-    Derivation {
-        title: context.title(&format!("D of {}", context.pair(pair))),
-        equation: "D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²".to_owned(),
-        with_numbers: vec![format!(
-            "D = {} rad²/s / {} rad²/s² = {} ms",
-            digits(moment),
-            digits(square),
-            digits(value)
-        )],
-        rests_on: context.models_and_frequencies(mismatch),
-        section: "M15.2",
-        value,
-    }
 }
 
 /// The mismatches that are pooled: of the measuring responses, or of all where none of those is defined.
@@ -240,11 +213,9 @@ fn substitution_lines(
     scalar: Scalar,
 ) -> Vec<String> {
     let Some(result) = analysis.condition(condition) else { return Vec::new() };
-    let line = |(kind, model, figures): &(BundleKind, usize, _)| {
+    let line = |(kind, model, figures): &Swap| {
         let name = &result.condition.bundle(*kind)[*model].name;
-        let figures: &Option<std::sync::Arc<crate::uncertainty::Figures>> = figures;
-        let figure = figures.as_ref().and_then(|figures| figures[scalar]);
-        let words = match figure {
+        let words = match figures.as_ref().and_then(|figures| figures[scalar]) {
             Some(figure) if scalar.is_delay() => format!("{:.2} ms", s_to_ms(figure)),
             Some(figure) => format!("{:.4}", figure.exp()),
             None => "none".to_owned(),
@@ -258,8 +229,7 @@ pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt:
     let schedule = analysis.schedule.as_ref().ok()?;
     let regression = schedule.gains.get(channel)?;
     let value = schedule.at(airspeed_kt).gain(channel);
-    let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-    let name = format!("k_{}", channel.name(&inputs, &outputs));
+    let name = format!("k_{}", channel.name_in(&analysis.study.dataset));
     let symbol = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => format!("ln {name}"),
         ScheduledQuantity::Gain => name.clone(),

@@ -1,16 +1,10 @@
-//! How a figure was computed: the equation, the same with its numbers in place, and what it rests on.
+//! How a figure was computed: the equation with what its symbols stand for, the same with its numbers in place, and what it rests on.
 
 mod channels;
 mod costs;
 mod deltas;
-mod terms;
 
-use crate::correction::{Channel, GainObjective};
-use crate::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use crate::fidelity::{CostAverage, Mismatch};
-use crate::units::number;
-
-use super::{Analysis, AssessmentChoice, ConditionAnalysis, Settings};
+use super::*;
 
 /// A figure of an analysis that is asked about.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,8 +78,8 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
         ExplainTarget::Delay(id, channel) => channels::delay(&of(id)?, *channel),
         ExplainTarget::GainObjective(id) => Some(channels::gain_objective(&of(id)?)),
         ExplainTarget::DelayObjective(id) => Some(channels::delay_objective(&of(id)?)),
-        ExplainTarget::CostBefore(id, pair) => costs::before(&of_pair(id, pair)?, *pair),
-        ExplainTarget::CostAfter(id, pair) => costs::after(&of_pair(id, pair)?, *pair),
+        ExplainTarget::CostBefore(id, pair) => costs::cost(&of_pair(id, pair)?, *pair, false),
+        ExplainTarget::CostAfter(id, pair) => costs::cost(&of_pair(id, pair)?, *pair, true),
         ExplainTarget::CostChange(id, pair, choice) => costs::change(&of_pair(id, pair)?, *pair, *choice),
         ExplainTarget::DiscontinuityRatio(model) => costs::ratio(&of(&model.condition)?, model),
         ExplainTarget::Score(model) => costs::score(&of(&model.condition)?, model),
@@ -140,8 +134,7 @@ impl<'a> Context<'a> {
 
     /// "LON".
     fn channel(&self, channel: Channel) -> String {
-        let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-        channel.name(&inputs, &outputs)
+        channel.name_in(&self.analysis.study.dataset)
     }
 
     /// "what of whom, condition 3".
@@ -259,6 +252,62 @@ fn median_words(values: &[f64]) -> String {
     }
 }
 
+/// Every symbol that equations here are written with, its meaning, and its unit where it has one (docs/method.md).
+const TERMS: [(&str, &str); 30] = [
+    ("G", "gain that the response wants, a ratio"),
+    ("D", "delay that the response wants [s]"),
+    ("H_ref", "response of the identified representative"),
+    ("H_sim", "response of the physics representative"),
+    ("Δφ", "phase of H_ref less that of H_sim, unwrapped [rad; in J deg]"),
+    ("ΔdB", "magnitude of H_sim less that of H_ref [dB]"),
+    ("ω", "frequency [rad/s]"),
+    ("W", "weight of a frequency, by coherence where that is used"),
+    ("k_o", "gain of the output channel"),
+    ("k_i", "gain of the input channel"),
+    ("τ_o", "delay of the output channel [s]"),
+    ("τ_i", "delay of the input channel [s]"),
+    ("τ", "delay of a channel [s]"),
+    ("k", "gain of a channel"),
+    ("L_o", "lead filter of the output channel"),
+    ("L_i", "lead filter of the input channel"),
+    ("w", "weight of a response, 0 where it is ignored"),
+    ("w_k", "weight of coordinate k of the trim"),
+    ("α", "weight of the corrections of the outputs"),
+    ("LB", "lower bound of the channels"),
+    ("UB", "upper bound of the channels"),
+    ("q", "quantile that sets the bounds"),
+    ("J", "cost of a response: what is left of magnitude and phase"),
+    ("ΔJ", "what the correction changes of J"),
+    ("d", "distance of two models: root of the mean J of one against the other"),
+    ("s_a", "score of a model: how far the others of its bundle are"),
+    ("r_a", "discontinuity ratio: the distance found over the one that the trims explain"),
+    ("p_ak", "coordinate k of the trim of model a"),
+    ("v", "airspeed, from −1 to 1 over the conditions"),
+    ("V", "airspeed [kt]"),
+];
+
+impl Derivation {
+    /// The symbols of the equation with what they stand for, in the order in which they come in it.
+    pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
+        let mut found: Vec<(usize, (&str, &str))> = TERMS
+            .into_iter()
+            .filter_map(|(symbol, meaning)| Some((place_of(symbol, &self.equation)?, (symbol, meaning))))
+            .collect();
+        found.sort_by_key(|(place, _)| *place);
+        found.into_iter().map(|(_, term)| term).collect()
+    }
+}
+
+/// Where a symbol stands in an equation by itself, not as a part of another.
+fn place_of(symbol: &str, equation: &str) -> Option<usize> {
+    let is_part = |neighbour: Option<char>| neighbour.is_some_and(|c| c.is_alphabetic() || c == '_');
+    equation.match_indices(symbol).map(|(place, _)| place).find(|&place| {
+        let before = equation[..place].chars().next_back();
+        let after = equation[place + symbol.len()..].chars().next();
+        !is_part(before) && !is_part(after)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,5 +323,26 @@ mod tests {
         assert_eq!(median_words(&[3.0, 1.0, 2.0]), "the middle one of 3 values from 1.0000 to 3.0000: 2.0000");
         let even = median_words(&[4.0, 1.0, 3.0, 2.0]);
         assert_eq!(even, "the mean of the middle two of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2");
+    }
+
+    fn terms(equation: &str) -> Vec<&'static str> {
+        let found = Derivation {
+            title: String::new(),
+            equation: equation.to_owned(),
+            with_numbers: Vec::new(),
+            rests_on: Vec::new(),
+            section: "",
+            value: 0.0,
+        };
+        found.terms().into_iter().map(|(symbol, _)| symbol).collect()
+    }
+
+    #[test]
+    fn the_symbols_of_an_equation_are_found_and_no_part_of_another() {
+        assert_eq!(terms("G = median_ω |H_ref| / |L_o H_sim L_i|"), ["G", "H_ref", "L_o", "H_sim", "L_i"]);
+        let gains = terms("min Σ w (G − k_o k_i)² + α Σ (k_o − 1)², subject to k_o k_i = G (held), LB ≤ k ≤ UB");
+        assert_eq!(gains, ["w", "G", "k_o", "k_i", "α", "LB", "k", "UB"]);
+        assert_eq!(terms("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²"), ["D", "W", "ω", "Δφ", "H_sim", "H_ref"]);
+        assert_eq!(terms("ΔJ = J(corrected) − J(uncorrected)"), ["ΔJ", "J"]);
     }
 }

@@ -24,12 +24,12 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
     );
     assert_eq!(table.conditions.len(), 10);
     for assessed in &table.conditions {
-        let Assessed::Nominal(changes) = &analysis.assessment[&assessed.condition] else {
+        let Ok(changes) = &analysis.assessment[&assessed.condition] else {
             panic!("condition {} is assessed", assessed.condition)
         };
         assert_eq!((&assessed.changes, assessed.missing.len()), (changes, 0));
     }
-    let job = AssessmentJob { analysis: Arc::new(analysis.clone()), choice: PAPER };
+    let job = AssessmentJob { analysis: Arc::new(analysis.clone()).into(), choice: PAPER };
     assert_eq!(*job.run(&mut (), &Unobserved).unwrap(), table);
 }
 

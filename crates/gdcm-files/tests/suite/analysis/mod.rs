@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use gdcm_core::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_core::response::{FrequencyGrid, FrequencyResponse};
-use gdcm_core::study::{Analysis, Assessed, Edit, Engine, Study, Unobserved, setting};
+use gdcm_core::study::{Analysis, Edit, Engine, Study, Unobserved, setting};
 use gdcm_files::corrections;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;

@@ -72,7 +72,7 @@ fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assess
     let analysis = analyze(&mut engine, &study);
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.values_kt.len(), 9);
-    assert!(matches!(analysis.assessment[&ConditionId(1)], Assessed::Nominal(_)));
+    assert!(analysis.assessment[&ConditionId(1)].is_ok());
 }
 
 #[test]

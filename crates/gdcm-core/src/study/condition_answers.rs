@@ -1,16 +1,9 @@
-//! One flight record and what each model of its condition answers to its sticks, with the corridors about flight, to be drawn (M17.2).
+//! What the models of one condition answer, to be drawn (M17.2): to the sticks of a flight record, with the corridors about flight, and to a
+//! test input, where no record is there to compare them with.
 
-use std::sync::Arc;
+use crate::requirements::{ChannelTolerance, RecordCheck, TestInput, Tolerance};
 
-use crate::dataset::ConditionId;
-use crate::executor::Executor;
-use crate::identification::{FlightRecord, Preparation, Validation, segments_of, validate};
-use crate::requirements::{ChannelTolerance, RecordCheck, Tolerance, ToleranceTable};
-use crate::units::telling;
-
-use super::time_histories::{Comparer, LEAST_PIECE_S, common_windows};
-use super::time_history_tables::percent;
-use super::{Analysis, Cancelled, HistoryRecord, Job, Progress, RequirementRole, Table, Trend};
+use super::*;
 
 /// One quantity of a record: flown, and as each model answers.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +21,7 @@ pub struct QuantityHistory {
 }
 
 /// One record against the tolerances.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistory {
     /// The condition.
     pub condition: ConditionId,
@@ -37,18 +30,11 @@ pub struct RecordHistory {
     /// Whether the identified models were kept from it.
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
-    pub flight: Arc<FlightRecord>,
+    pub flight: Shared<FlightRecord>,
     /// Each row of the table that can be applied.
     pub quantities: Vec<QuantityHistory>,
     /// In words what is not compared, and why.
     pub missing: Vec<String>,
-}
-
-impl PartialEq for RecordHistory {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.flight, &other.flight)
-            && (self.condition, &self.quantities, &self.missing) == (other.condition, &other.quantities, &other.missing)
-    }
 }
 
 impl RecordHistory {
@@ -91,10 +77,10 @@ impl RecordHistory {
 }
 
 /// A record of a condition against the tolerances of the study, beside the live answer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
     /// The analysis.
-    pub analysis: Arc<Analysis>,
+    pub analysis: Shared<Analysis>,
     /// The condition.
     pub condition: ConditionId,
     /// The record.
@@ -105,20 +91,9 @@ pub struct RecordHistoryJob {
     pub tolerances: ToleranceTable,
 }
 
-impl PartialEq for RecordHistoryJob {
-    fn eq(&self, other: &Self) -> bool {
-        let key = |of: &Self| (of.condition, of.record.clone(), of.preparation.clone(), of.tolerances.clone());
-        Arc::ptr_eq(&self.analysis, &other.analysis) && key(self) == key(other)
-    }
-}
-
 impl RecordHistoryJob {
     fn found(&self, executor: &dyn Executor) -> Result<RecordHistory, String> {
-        let result = match self.analysis.conditions.get(&self.condition) {
-            Some(Ok(result)) => result,
-            Some(Err(failure)) => return Err(failure.to_string()),
-            None => return Err("it was not analysed".to_owned()),
-        };
+        let result = self.analysis.result(self.condition)?;
         let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..self.preparation.clone() };
         let segments = segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
         let (mut missing, mut models) = (Vec::new(), Vec::new());
@@ -155,7 +130,7 @@ impl RecordHistoryJob {
         };
         let quantities = comparer.rows.iter().map(quantity).collect();
         let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
-        let flight = Arc::clone(&self.record.flight);
+        let flight = self.record.flight.clone();
         Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })
     }
 }
@@ -169,5 +144,120 @@ impl Job for RecordHistoryJob {
     fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let found = self.found(executor.as_ref()).map(Arc::new);
         if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+    }
+}
+
+/// Time shown, as a multiple of the duration of the test.
+const SHOWN: f64 = 5.0;
+/// The least time shown \[s\].
+const LEAST_SHOWN_S: f64 = 10.0;
+/// Sample times that the time shown has.
+const STEPS: usize = 1000;
+
+/// What the models of a condition answer to a test input from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswers {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Index of the input that is moved.
+    pub input: usize,
+    /// How it is moved.
+    pub test: TestInput,
+    /// Sample time \[s\]; the first sample is at 0 s.
+    pub sample_time_s: f64,
+    /// The input at every sample, in its unit.
+    pub signal: Vec<f64>,
+    /// Outputs of each model, samples x outputs, in their units; in words why there are none.
+    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, String>)>,
+}
+
+impl TestAnswers {
+    fn of(job: &TestAnswersJob, executor: &dyn Executor) -> Result<Self, String> {
+        let TestAnswersJob { analysis, condition, input, test } = job;
+        let (condition, input) = (*condition, *input);
+        let result = analysis.result(condition)?;
+        let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
+        let answer = |role: &RequirementRole| {
+            let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
+            test.answer(&model, input, sample_time_s, STEPS + 1).map_err(|error| error.to_string())
+        };
+        let answers = each(executor, &RequirementRole::ALL, answer);
+        let signal = test.signal(sample_time_s, STEPS + 1);
+        let models = RequirementRole::ALL.into_iter().zip(answers).collect();
+        Ok(Self { condition, input, test: *test, sample_time_s, signal, models })
+    }
+
+    /// The times of the samples \[s\].
+    pub fn time_s(&self) -> Vec<f64> {
+        (0..self.signal.len()).map(|n| n as f64 * self.sample_time_s).collect()
+    }
+}
+
+/// The answers of the models of a condition to the test input of the study, beside the live answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswersJob {
+    /// The analysis.
+    pub analysis: Shared<Analysis>,
+    /// The condition.
+    pub condition: ConditionId,
+    /// Index of the input that is moved.
+    pub input: usize,
+    /// How it is moved.
+    pub test: TestInput,
+}
+
+impl Job for TestAnswersJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    /// In words why there are none.
+    type Output = Result<Arc<TestAnswers>, String>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let found = TestAnswers::of(self, executor.as_ref()).map(Arc::new);
+        if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::couplings_tests::EXAMPLE;
+    use super::*;
+    use crate::correction::Pade;
+    use crate::dataset::BundleKind;
+    use crate::requirements::TestInputShape;
+    use crate::study::Unobserved;
+
+    fn answers(test: TestInput) -> TestAnswers {
+        let analysis = EXAMPLE.analysis.clone();
+        let condition = *analysis.conditions.keys().next().unwrap();
+        let job = TestAnswersJob { analysis: Arc::new(analysis).into(), condition, input: 1, test };
+        let executor: Box<dyn Executor> = Box::new(crate::executor::Sequential);
+        TestAnswers::clone(&job.run(&mut { executor }, &Unobserved).unwrap().unwrap())
+    }
+
+    #[test]
+    fn every_model_answers_in_proportion_to_the_size_of_the_test() {
+        let test = TestInput { shape: TestInputShape::Doublet, size: 1.0, duration_s: 1.0 };
+        let (one, three) = (answers(test), answers(TestInput { size: 3.0, ..test }));
+        for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
+            let (small, large) = (small.as_ref().unwrap(), large.as_ref().unwrap());
+            // Linear models; rounding of a thousand steps.
+            assert!((3.0 * small - large).amax() <= 1e-9 * large.amax(), "{role:?}");
+            assert!(small.amax() > 0.0, "{role:?}");
+        }
+    }
+
+    #[test]
+    fn the_corrected_model_answers_as_that_which_is_exported() {
+        let test = TestInput { shape: TestInputShape::Step, size: 2.0, duration_s: 3.0 };
+        let found = answers(test);
+        let result = EXAMPLE.analysis.conditions[&found.condition].as_ref().unwrap();
+        let physics = result.condition.model(BundleKind::Physics, result.representative_name(BundleKind::Physics));
+        let physics = physics.unwrap().state_space().unwrap();
+        let exported = result.corrected_model(physics, &result.correction, Pade::default()).unwrap().model;
+        let expected = test.answer(&exported, 1, found.sample_time_s, found.signal.len()).unwrap();
+        let of = |role| found.models.iter().find(|of| of.0 == role).unwrap().1.as_ref().unwrap();
+        assert_eq!(*of(RequirementRole::Corrected), expected);
+        assert_ne!(*of(RequirementRole::Physics), expected);
     }
 }

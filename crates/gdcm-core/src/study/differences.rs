@@ -1,16 +1,105 @@
-//! Carrying the decisions of a study over to another state of its dataset.
+//! What differs between two sets of decisions about one dataset, and between two states of one dataset, with the decisions carried over from
+//! one to the other.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
-use std::sync::Arc;
+use super::*;
 
-use serde::{Deserialize, Serialize};
+/// One decision that was taken otherwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DecisionDifference {
+    /// What was decided: "α of the gains", "LON → Q", "nominal (condition 10)".
+    pub what: String,
+    /// The one decision: "1", "held", "rejected".
+    pub before: String,
+    /// The other.
+    pub after: String,
+}
 
-use crate::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
+impl DecisionDifference {
+    fn new(what: impl Into<String>, before: impl Into<String>, after: impl Into<String>) -> Self {
+        Self { what: what.into(), before: before.into(), after: after.into() }
+    }
+}
 
-use super::{
-    AdoptedModels, ConditionChoice, Edit, RequirementSettings, ResponseNames, Settings, Study, TurnedChannel, Variant,
-};
+impl fmt::Display for DecisionDifference {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}: {} → {}", self.what, self.before, self.after)
+    }
+}
+
+/// Every decision in which `after` differs from `before`, a study of the same dataset: settings, responses, then condition by
+/// condition. What was kept under names does not count.
+pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
+    let (a, b) = (&before.settings, &after.settings);
+    let changed = SETTINGS.iter().filter(|setting| setting.value(a) != setting.value(b));
+    let changed = changed.map(|setting| DecisionDifference::new(setting.name, setting.words(a), setting.words(b)));
+    let mut differences: Vec<DecisionDifference> = changed.collect();
+    differences.extend(pair_differences(before, (&a.constrained, &b.constrained), ["held", "free"]));
+    differences.extend(pair_differences(before, (&a.ignored, &b.ignored), ["ignored", "fitted"]));
+    for channel in
+        Channel::all_of(&before.dataset).filter(|channel| before.signs.get(channel) != after.signs.get(channel))
+    {
+        let sign = |of: &Study| {
+            of.signs.get(&channel).map_or("as in the file".to_owned(), |of| format!("{} turned", of.models()))
+        };
+        let what = format!("sign of {}", channel.name_in(&before.dataset));
+        differences.push(DecisionDifference::new(what, sign(before), sign(after)));
+    }
+    for condition in before.dataset.conditions() {
+        let id = condition.id();
+        let (a, b) = (before.choice(id), after.choice(id));
+        let scheduled = ([a.scheduled, b.scheduled], ["left out of the schedule", "in the schedule"]);
+        let held_out = ([a.held_out, b.held_out], ["not held out", "held out"]);
+        for ([before, after], words) in [scheduled, held_out].into_iter().filter(|([a, b], _)| a != b) {
+            let [before, after] = [before, after].map(|is_so| words[usize::from(is_so)]);
+            differences.push(DecisionDifference::new(format!("condition {id}"), before, after));
+        }
+        for kind in BundleKind::BOTH {
+            differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
+        }
+    }
+    differences
+}
+
+fn pair_differences(
+    study: &Study,
+    (before, after): (&PairTable<bool>, &PairTable<bool>),
+    [yes, no]: [&str; 2],
+) -> Vec<DecisionDifference> {
+    let word = |marked: bool| if marked { yes } else { no };
+    let changed = before.iter().filter(|(pair, marked)| **marked != after[*pair]);
+    changed
+        .map(|(pair, &marked)| DecisionDifference::new(study.dataset.pair_name(pair), word(marked), word(!marked)))
+        .collect()
+}
+
+fn bundle_differences(
+    condition: ConditionId,
+    kind: BundleKind,
+    before: &BundleChoice,
+    after: &BundleChoice,
+) -> Vec<DecisionDifference> {
+    let rejected =
+        |choice: &BundleChoice, name: &String| match (choice.rejected.contains(name), choice.reasons.get(name)) {
+            (true, Some(reason)) => format!("rejected ({reason})"),
+            (true, None) => "rejected".to_owned(),
+            (false, _) => "kept".to_owned(),
+        };
+    let names: BTreeSet<&String> = before.rejected.iter().chain(&after.rejected).collect();
+    let of_models = names.into_iter().map(|name| {
+        DecisionDifference::new(
+            format!("{name} (condition {condition})"),
+            rejected(before, name),
+            rejected(after, name),
+        )
+    });
+    let represents = |choice: &BundleChoice| choice.pinned.clone().unwrap_or_else(|| "the medoid".to_owned());
+    let pinned = DecisionDifference::new(
+        format!("{kind} representative (condition {condition})"),
+        represents(before),
+        represents(after),
+    );
+    of_models.chain([pinned]).filter(|difference| difference.before != difference.after).collect()
+}
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,18 +137,6 @@ pub enum Difference {
         /// Why not.
         why: String,
     },
-}
-
-impl Difference {
-    /// A decision of a variant that no longer applies.
-    fn of_variant(self, name: &str) -> Self {
-        match self {
-            Difference::NotApplied { decision, why } => {
-                Difference::NotApplied { decision: format!("{decision}, of variant \"{name}\""), why }
-            }
-            other => other,
-        }
-    }
 }
 
 impl fmt::Display for Difference {
@@ -108,7 +185,7 @@ impl Decisions {
         Self {
             settings: study.settings.named(&study.dataset),
             choices: study.choices.clone(),
-            taken: study.taken_models().map(|(id, taken)| (id, Arc::clone(taken))).collect(),
+            taken: study.taken.clone().into_iter().collect(),
             signs: study.turned_channels(),
             requirements: Arc::clone(&study.requirements),
             variants: study
@@ -130,8 +207,7 @@ impl Decisions {
         }
         study.settings = self.settings.with_responses(|verb, names| marked(verb, names, &study, &mut differences));
         for taken in &self.taken {
-            let edit = Edit::TakeModels(vec![taken.clone()]);
-            carry_out(&edit, &mut study, &mut differences);
+            carry_out(&Edit::TakeModels(vec![taken.clone()]), &mut study, &mut differences);
         }
         for turned in &self.signs {
             match turned.find(&study.dataset) {
@@ -148,8 +224,13 @@ impl Decisions {
             take_choice(&mut study, condition, choice, &mut differences);
         }
         for (name, decisions) in &self.variants {
-            let (of_variant, not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
-            differences.extend(not_applied.into_iter().map(|difference| difference.of_variant(name)));
+            let (of_variant, mut not_applied) = decisions.applied_to(Arc::clone(&study.dataset));
+            for difference in &mut not_applied {
+                if let Difference::NotApplied { decision, .. } = difference {
+                    decision.push_str(&format!(", of variant \"{name}\""));
+                }
+            }
+            differences.extend(not_applied);
             let Study { settings, choices, .. } = of_variant;
             if study.variant(name).is_none() {
                 study.variants.push(Arc::new(Variant { name: name.clone(), settings, choices }));
@@ -212,10 +293,9 @@ impl Inventory {
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let now = Inventory::of(dataset);
         let mut differences = Vec::new();
-        let by_id = |inventory: &'_ Inventory| -> BTreeMap<ConditionId, ConditionInventory> {
-            inventory.0.iter().map(|condition| (condition.id, condition.clone())).collect()
-        };
-        let (before, now) = (by_id(self), by_id(&now));
+        let [before, now] = [self, &now].map(|of| -> BTreeMap<ConditionId, &ConditionInventory> {
+            of.0.iter().map(|condition| (condition.id, condition)).collect()
+        });
         let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();
         for id in ids {
             match (before.get(&id), now.get(&id)) {
@@ -284,10 +364,7 @@ impl ConditionInventory {
 
     /// The models of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
-        match kind {
-            BundleKind::Physics => &self.physics,
-            BundleKind::Identified => &self.identified,
-        }
+        kind.pick(&self.physics, &self.identified)
     }
 }
 

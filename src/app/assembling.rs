@@ -1,20 +1,20 @@
 //! Putting models of files together: reading them in a thread, and what becomes of them.
 
-use gdcm_core::message_text::sanitized_path;
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::view::FormKind;
-use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 use gdcm_core::assembly::Rules;
+use gdcm_core::message_text::sanitized_path;
 use gdcm_files::{
     FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder, rules_path,
     sources_folder,
 };
 
 use super::{DialogPurpose, GdcmApp, ReplySender};
+use crate::view::FormKind;
+use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 
 /// Bytes of values between two words about how far a file is read.
 const TOLD_EVERY: u64 = 16 << 20;
@@ -121,10 +121,9 @@ impl GdcmApp {
         self.in_thread("the reading of models", read, move |app, read| {
             let Some(bench) = app.state.assembling.as_mut().filter(|_| app.models.is_newest(number)) else { return };
             bench.reading = None;
-            match read {
-                Some((sources, Ok(found))) => app.take_models(sources, found),
-                Some((_, Err(error))) => app.notify_error(error.to_string()),
-                None => {}
+            let Some((sources, found)) = read else { return };
+            if let Some(found) = app.unless_error(found) {
+                app.take_models(sources, found);
             }
         });
     }
@@ -161,16 +160,12 @@ impl GdcmApp {
 
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.at_home(path);
-        match load_rules(&path) {
-            Ok((rules, cautions)) => {
-                if let Some(bench) = &mut self.state.assembling {
-                    bench.change(rules);
-                }
-                let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
-                self.done(format!("took the rules of {}{cautions}", sanitized_path(&path)));
-            }
-            Err(error) => self.notify_error(error.to_string()),
+        let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else { return };
+        if let Some(bench) = &mut self.state.assembling {
+            bench.change(rules);
         }
+        let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
+        self.done(format!("took the rules of {}{cautions}", sanitized_path(&path)));
     }
 
     fn said(&self) -> Option<Rules> {
@@ -181,8 +176,7 @@ impl GdcmApp {
     fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.said() else { return };
         let path = self.at_home(path);
-        let mut outputs = self.outputs();
-        let saved = add_rules(&rules, &path, &mut outputs).and_then(|()| outputs.persist());
+        let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
         self.saved_to(saved, &path, FormKind::Models, AssemblingCommand::SaveRules(path.clone()).into());
     }
 
@@ -196,12 +190,10 @@ impl GdcmApp {
         };
         let rules = bench.assembly().rules().clone();
         let beside = rules_path(&path);
-        let mut outputs = self.outputs();
-        let written = outputs
-            .check(&[&path, &beside])
-            .and_then(|()| add_dataset(&dataset, &path, &mut outputs))
-            .and_then(|()| add_rules(&rules, &beside, &mut outputs))
-            .and_then(|()| outputs.persist());
+        let written = self.write_all(&[&path, &beside], |outputs| {
+            add_dataset(&dataset, &path, outputs)?;
+            add_rules(&rules, &beside, outputs)
+        });
         match written {
             Ok(()) => {
                 self.state.forms.shown = None;

@@ -1,12 +1,9 @@
 //! Opening and saving; the desktop's file dialogs, and the list of recent files. What may take long is done in threads, so that the
 //! window never waits.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::path::{Path, PathBuf};
 
-use crate::view::assembling::AssemblingCommand;
-use crate::view::records::RecordsCommand;
-use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, RequirementTable, State};
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Difference, Study};
 use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{
@@ -14,7 +11,11 @@ use gdcm_files::{
     file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
 };
 
-use super::{GdcmApp, caught};
+use super::GdcmApp;
+use super::threads::caught;
+use crate::view::assembling::AssemblingCommand;
+use crate::view::records::RecordsCommand;
+use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, RequirementTable, State};
 
 /// The study as it was saved last.
 #[derive(Clone, Debug)]
@@ -118,10 +119,10 @@ impl GdcmApp {
             newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
             Ok(recent_files(&directory).into_iter().map(recent_file).collect())
         };
-        self.in_thread("the reading of recent files", read, |app, read| match read {
-            Some(Ok(files)) => app.state.recent = files,
-            Some(Err(error)) => app.notify_error(error.to_string()),
-            None => {}
+        self.in_thread("the reading of recent files", read, |app, read| {
+            if let Some(files) = read.and_then(|read| app.unless_error(read)) {
+                app.state.recent = files;
+            }
         });
     }
 
@@ -170,15 +171,11 @@ impl GdcmApp {
 
     /// Puts the example in the place of what is open, behind the start page.
     pub(super) fn close_study(&mut self) {
-        match embedded_example() {
-            Ok(example) => {
-                self.show(Opened::Dataset(example));
-                self.state.on_start_page = true;
-                self.state.notice = None;
-                self.read_recent(None);
-            }
-            Err(error) => self.notify_error(error.to_string()),
-        }
+        let Some(example) = self.unless_error(embedded_example()) else { return };
+        self.show(Opened::Dataset(example));
+        self.state.on_start_page = true;
+        self.state.notice = None;
+        self.read_recent(None);
     }
 
     fn answer_opened(&mut self, purpose: ReadFor, opened: Result<Opened, FileError>) {
@@ -334,9 +331,13 @@ impl GdcmApp {
         if let Some(path) = &self.saved.path {
             return path.display().to_string();
         }
+        format!("{}.{STUDY_EXTENSION}", self.stem())
+    }
+
+    /// What files about the dataset are called, without their ends.
+    pub(super) fn stem(&self) -> String {
         let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-        let stem = stem.unwrap_or_else(|| "example".to_owned());
-        format!("{}.{STUDY_EXTENSION}", stem.trim_end_matches(".json"))
+        stem.unwrap_or_else(|| "example".to_owned()).trim_end_matches(".json").to_owned()
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use super::{Fault, Mailbox, caught};
+use super::threads::{Fault, Mailbox, caught};
 use gdcm_core::study::{Cancelled, Job, Progress};
 
 /// What a job has made, or the fault that ended it; nothing is told of a job that was given up.

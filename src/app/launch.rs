@@ -20,8 +20,10 @@ use gdcm_core::study::{Engine, LIVE_PROOF};
 use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
 
+use super::recovery::{Autosave, LAST_WAIT, end_words};
 use super::threads::{self, Fault, caught};
-use super::{Autosave, EngineMaker, GdcmApp, LAST_WAIT, PREFERENCES, end_words};
+use super::window::PREFERENCES;
+use super::{EngineMaker, GdcmApp};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
 pub(super) const APP_ID: &str = "gdcm";

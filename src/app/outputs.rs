@@ -1,19 +1,24 @@
-//! What the window writes to files: corrections, exports for other tools, figures and tables. A file that is there is written over
-//! only where the engineer said so in a form.
+//! What the window writes to files: corrections, exports for other tools, figures and tables, the report, and the tables that requirements
+//! are asked with, which are read here too. A file that is there is written over only where the engineer said so in a form.
 
-use gdcm_core::message_text::sanitized_path;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::view::{Command, FormKind, View, figure_name, figure_of, tables_in_place};
-use gdcm_core::study::{Analysis, Table};
+use gdcm_core::message_text::sanitized_path;
+use gdcm_core::study::{
+    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress, RequirementSettings, Table,
+};
 use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
 use gdcm_files::{
-    ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, csv_text, figure_format, save_tables,
+    Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource, ReportSubject,
+    add_tolerances, csv_text, figure_format, load_tolerances, read_levels, report, save_report, save_tables,
     write_export, write_figure, write_results,
 };
 
 use super::GdcmApp;
+use super::files::study_name;
+use crate::view::views::{all_records, known_poles};
+use crate::view::{Command, FormKind, RequirementTable, View, figure_name, figure_of, tables_in_place};
 
 impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.
@@ -27,14 +32,13 @@ impl GdcmApp {
         self.written(written.map(words), FormKind::Export, Command::Export);
     }
 
-    /// Shows the form that exports for other tools; a name is proposed where none was typed.
-    pub(super) fn ask_export_as(&mut self) {
-        let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
+    /// Proposes a name for an export for other tools, where none was typed.
+    pub(super) fn propose_export_name(&mut self) {
+        let stem = self.stem();
         let extension = self.state.forms.export_format.extension;
         let path = self.state.forms.typed_in(FormKind::ExportAs);
         if path.is_empty() {
-            let stem = stem.unwrap_or_else(|| "example".to_owned());
-            *path = format!("{}.{extension}", stem.trim_end_matches(".json"));
+            *path = format!("{stem}.{extension}");
         }
     }
 
@@ -58,7 +62,7 @@ impl GdcmApp {
 
     /// The analysis of what is shown, proven; where it is not there yet, that is said.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
-        let analysis = self.analysis_to_write("export").map_err(|why| self.notify_error(why)).ok()?;
+        let analysis = self.unless_error(self.analysis_to_write("export"))?;
         // With how sure its figures are, as far as that is computed.
         let of_this = |bars: &Analysis| bars.study == analysis.study;
         Some(self.state.analysis_with_bars().filter(of_this).map_or(analysis.clone(), Arc::new))
@@ -153,6 +157,18 @@ impl GdcmApp {
         OutputSet::new(self.existing, self.inputs())
     }
 
+    /// Writes what `add` adds, all of it or nothing, once `paths` were found to be free.
+    pub(super) fn write_all(
+        &self,
+        paths: &[&Path],
+        add: impl FnOnce(&mut OutputSet) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        let mut outputs = self.outputs();
+        outputs.check(paths)?;
+        add(&mut outputs)?;
+        outputs.persist()
+    }
+
     /// Says what was written, asks in a form whether `again` may write over files, or says why nothing was written.
     pub(super) fn written(&mut self, written: Result<String, FileError>, form: FormKind, again: Command) {
         match written {
@@ -180,5 +196,155 @@ impl GdcmApp {
     /// What the program reads from, which is never overwritten by results.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         self.saved.path.iter().cloned().chain(self.loaded.origin.file()).collect()
+    }
+
+    /// Asks where to write the report, unless there is nothing to report on yet.
+    pub(super) fn ask_report(&mut self) {
+        if self.unless_error(self.analysis_to_write("write the report")).is_some() {
+            let form = self.state.forms.typed_in(FormKind::Report);
+            let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
+            *form = Path::new(form.trim()).with_file_name(name).display().to_string();
+            self.state.forms.shown = Some(FormKind::Report);
+        }
+    }
+
+    /// Has the report written; asks before it overwrites a file.
+    pub(super) fn write_report(&mut self, path: PathBuf) {
+        let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else { return };
+        let (path, inputs, existing) = (self.at_home(path), self.inputs(), self.existing);
+        match self.outputs().check(&[&path]) {
+            Ok(()) => {
+                let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
+                self.state.forms.shown = None;
+                // What requirements are asked with has no part in the live answer, which may be older.
+                let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
+                let (records, known) = (all_records(&self.state), known_poles(&self.state));
+                self.reporting = Some(ReportJob { analysis, records, known, source, path, existing, inputs });
+            }
+            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
+        }
+    }
+
+    /// Says what came of a report.
+    pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
+        self.reporting = None;
+        match outcome {
+            Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
+            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(job.path)),
+        }
+    }
+
+    /// Says that a report under way was given up, by hand or by a fault.
+    pub(super) fn give_up_report(&mut self) {
+        if let Some(job) = self.reporting.take() {
+            self.notify_error(format!("{} was not written: it was stopped", sanitized_path(&job.path)));
+        }
+    }
+
+    /// Takes a table into the study.
+    pub(super) fn read_requirement_table(&mut self, table: RequirementTable, path: PathBuf) {
+        let path = self.at_home(path);
+        let mut settings = RequirementSettings::clone(&self.state.study.requirements);
+        let (what, read) = match table {
+            RequirementTable::Levels => {
+                ("levels", read_levels(&path).map(|levels| (settings.levels = levels, Vec::new()).1))
+            }
+            RequirementTable::Tolerances => {
+                let read = load_tolerances(&path);
+                ("tolerances", read.map(|(tolerances, cautions)| (settings.tolerances = tolerances, cautions).1))
+            }
+        };
+        let Some(cautions) = self.unless_error(read) else { return };
+        self.state.forms.shown = None;
+        self.decide(&Edit::SetRequirements(what, Arc::new(settings)));
+        if !cautions.is_empty() {
+            self.notify_error(format!("taken, but {}: {}", sanitized_path(&path), cautions.join("; ")));
+        }
+    }
+
+    /// Asks where to write the tolerances.
+    pub(super) fn ask_write_tolerances(&mut self) {
+        let field = self.state.forms.typed_in(FormKind::WriteTolerances);
+        if field.is_empty() {
+            "tolerances.json".clone_into(field);
+        }
+        self.state.forms.shown = Some(FormKind::WriteTolerances);
+    }
+
+    /// Writes the tolerances of the study; asks before it overwrites a file.
+    pub(super) fn write_tolerances(&mut self, path: PathBuf) {
+        let path = self.at_home(path);
+        let tolerances = &self.state.study.requirements.tolerances;
+        let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
+        self.saved_to(written, &path, FormKind::WriteTolerances, Command::WriteTolerances(path.clone()));
+    }
+}
+
+/// Making a report and writing it: seconds, for it has every plot.
+#[derive(Clone, Debug)]
+pub struct ReportJob {
+    /// What it is about.
+    pub analysis: Arc<Analysis>,
+    /// The flight records that are open, which its models answer to.
+    pub records: Vec<HistoryRecords>,
+    /// The poles that were identified.
+    pub known: KnownPoles,
+    /// The files of the study.
+    pub source: ReportSource,
+    /// Where it goes.
+    pub path: PathBuf,
+    /// What becomes of a file that is there.
+    pub existing: Existing,
+    /// What the program reads from, which is never replaced.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl PartialEq for ReportJob {
+    fn eq(&self, other: &Self) -> bool {
+        let decided = |job: &Self| (job.source.clone(), job.path.clone(), job.existing);
+        let same_analysis = Arc::ptr_eq(&self.analysis, &other.analysis);
+        same_analysis
+            && decided(self) == decided(other)
+            && (&self.records, &self.known) == (&other.records, &other.known)
+    }
+}
+
+impl Job for ReportJob {
+    /// The engine that has the responses that are drawn.
+    type Tools = Engine;
+    type Output = Result<(), FileError>;
+
+    fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let histories = match self.records.as_slice() {
+            [] => None,
+            records => Some(engine.time_histories(&self.analysis, records, progress)?),
+        };
+        let subject = ReportSubject { analysis: &self.analysis, histories: histories.as_ref(), known: &self.known };
+        let report = report(subject, &self.source, engine, progress)?;
+        // Whoever stopped it does not want a file any more.
+        if progress.cancelled() {
+            return Err(Cancelled);
+        }
+        Ok(save_report(&report, &self.path, OutputSet::new(self.existing, self.inputs.clone())))
+    }
+}
+
+/// A name for the report of a study, or of a dataset: `flight-7-report.html`.
+fn report_name(file: Option<&Path>) -> String {
+    let name = file.map_or_else(|| "example".to_owned(), |file| study_name(Some(file)));
+    let stem = name.split(".gdcm-study").next().unwrap_or(&name);
+    let stem = stem.trim_end_matches(".gz").trim_end_matches(".json");
+    format!("{stem}-report.html")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_is_named_for_its_study_or_else_for_its_dataset() {
+        assert_eq!(report_name(None), "example-report.html");
+        assert_eq!(report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))), "flight 7-report.html");
+        assert_eq!(report_name(Some(Path::new("data.json.gz"))), "data-report.html");
     }
 }

@@ -5,9 +5,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, RecordsReading, WantedDataset};
-use crate::view::views::RequirementsPage;
-use crate::view::{FormKind, View};
 use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{Identification, IdentificationError, Signal};
@@ -19,7 +16,11 @@ use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{DatasetOrigin, FileError, add_dataset, example_records, load_records, read_records, relative_entry};
 
-use super::{DialogPurpose, GdcmApp, Untold};
+use super::threads::Untold;
+use super::{DialogPurpose, GdcmApp};
+use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, WantedDataset};
+use crate::view::views::RequirementsPage;
+use crate::view::{FormKind, View};
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]
@@ -130,7 +131,7 @@ impl GdcmApp {
         let (sources, typed) = (records.sources.clone(), PathBuf::from(records.wanted.path.trim()));
         let path = self.at_home(typed);
         let (number, stop) = self.record_reader.join();
-        self.state.records.reading = Some(RecordsReading { name: "records".to_owned() });
+        self.state.records.reading = Some("records".to_owned());
         let make = move || dataset_of_files(&sources, channels, band, path, &Untold(stop));
         self.in_thread("a dataset of records", make, move |app, made| {
             if !app.record_reader.is_newest(number) {
@@ -146,12 +147,7 @@ impl GdcmApp {
     }
 
     fn write_record_dataset(&mut self, dataset: &Dataset, made: DatasetOfRecords) {
-        let mut outputs = self.outputs();
-        let written = outputs
-            .check(&[&made.path])
-            .and_then(|()| add_dataset(dataset, &made.path, &mut outputs))
-            .and_then(|()| outputs.persist());
-        match written {
+        match self.write_all(&[&made.path], |outputs| add_dataset(dataset, &made.path, outputs)) {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.open(made.path.clone(), None);
@@ -163,10 +159,8 @@ impl GdcmApp {
 
     /// Reads the records that belong to the condition shown, once a view that needs them is shown.
     pub(super) fn look_for_records(&mut self) {
-        let condition = self.state.condition();
-        let id = condition.id();
+        let id = self.state.condition().id();
         self.follow_band(id);
-        let condition = self.state.condition();
         let display = &self.state.display;
         let is_compared = display.requirements_page == RequirementsPage::Histories;
         let is_shown = display.arrangement.is_shown(View::Records)
@@ -175,7 +169,7 @@ impl GdcmApp {
         if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
             return;
         }
-        let entries = condition.records().to_vec();
+        let entries = self.state.condition().records().to_vec();
         self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
         let name = format!("the records of condition {id}");
         match &self.loaded.origin {
@@ -209,7 +203,7 @@ impl GdcmApp {
         let clock_band_end = channels.resampling.band_end;
         let dataset = Arc::clone(self.state.study.file_dataset());
         let of = Arc::clone(&dataset);
-        self.state.records.reading = Some(RecordsReading { name });
+        self.state.records.reading = Some(name);
         let (number, stop) = self.record_reader.join();
         let read = move || read(&dataset, &channels, stop);
         self.in_thread("the reading of records", read, move |app, found| {
@@ -217,10 +211,8 @@ impl GdcmApp {
                 return;
             }
             app.state.records.reading = None;
-            match found {
-                Some(Ok(found)) => app.take_records(found, clock_band_end),
-                Some(Err(error)) => app.notify_error(error.to_string()),
-                None => {}
+            if let Some(found) = found.and_then(|found| app.unless_error(found)) {
+                app.take_records(found, clock_band_end);
             }
             // What was looked for is not looked for again, found or not.
             app.records_of(app.state.condition().id());
@@ -244,7 +236,7 @@ impl GdcmApp {
             records.clock_band_end = clock_band_end.filter(|_| is_known);
             records.rows.extend(rows);
             leave_out_copies(&mut records.rows);
-            records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
+            records.choose(records.chosen);
             records.changed = true;
         }
         let left_out = self.made_of_records().into_iter().flat_map(|made| made.left_out.iter().cloned());
@@ -331,31 +323,28 @@ impl GdcmApp {
     }
 }
 
+/// Changes something, where it is there.
+fn set<T>(of: Option<&mut T>, change: impl FnOnce(&mut T)) {
+    if let Some(of) = of {
+        change(of);
+    }
+}
+
 /// What the engineer says of the records of a condition.
 fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &RecordChannels) {
     match command {
-        RecordsCommand::Choose(index) => {
-            records.chosen = index.min(records.rows.len().saturating_sub(1));
-            return;
-        }
-        RecordsCommand::SetKind(index, kind) => {
-            records.rows.get_mut(index).into_iter().for_each(|row| row.guess.kind = kind);
-            return;
-        }
-        RecordsCommand::SetUsed(index, used) => {
-            records.rows.get_mut(index).into_iter().for_each(|row| row.used = used);
-        }
+        RecordsCommand::Choose(index) => return records.choose(index),
+        RecordsCommand::SetKind(index, kind) => return set(records.rows.get_mut(index), |row| row.guess.kind = kind),
+        RecordsCommand::SetUsed(index, used) => set(records.rows.get_mut(index), |row| row.used = used),
         RecordsCommand::SetHeldOut(index, held_out) => {
-            records.rows.get_mut(index).into_iter().for_each(|row| row.guess.held_out = held_out);
+            set(records.rows.get_mut(index), |row| row.guess.held_out = held_out);
         }
         RecordsCommand::SetLayout(index, layout) => set_layout(records, index, &layout, channels),
         RecordsCommand::SetDelay(signal, delay_s) => {
-            records.channel_mut(&signal).into_iter().for_each(|channel| channel.delay_s = delay_s);
+            set(records.channel_mut(&signal), |channel| channel.delay_s = delay_s);
         }
         RecordsCommand::SetRemedies(index, remedies) => set_remedies(records, index, &remedies, channels),
-        RecordsCommand::SetHold(signal, hold) => {
-            records.channel_mut(&signal).into_iter().for_each(|channel| channel.hold = hold);
-        }
+        RecordsCommand::SetHold(signal, hold) => set(records.channel_mut(&signal), |channel| channel.hold = hold),
         RecordsCommand::SetBand(band) => records.band = band,
         RecordsCommand::SetSearch(search) => records.search = search,
         RecordsCommand::SetReferences(references) => records.references = references,
@@ -363,7 +352,7 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::RemovePart(index) => {
             if records.rows.get(index).is_some_and(|row| row.table.part_s.is_some()) {
                 records.rows.remove(index);
-                records.chosen = records.chosen.min(records.rows.len().saturating_sub(1));
+                records.choose(records.chosen);
             }
         }
         _ => return,
@@ -401,7 +390,7 @@ fn set_remedies(
     let Some(row) = records.rows.get_mut(index) else { return };
     let mut layout = row.layout.clone();
     for (signal, remedy) in remedies {
-        layout.channel_mut(signal.role, signal.index).into_iter().for_each(|used| used.remedy = *remedy);
+        set(layout.channel_mut(signal.role, signal.index), |used| used.remedy = *remedy);
     }
     *row = row.laid_out(layout, channels);
 }
@@ -498,11 +487,8 @@ fn dataset_of_files(
         problems.extend(row.problems.iter().map(|problem| format!("{}: {problem}", row.table.name)));
         if row.problems.is_empty() {
             channels.take_units(&row.layout, &row.table);
-            entries.push(relative_entry(
-                row.layout.condition_record(&row.table, &row.guess, &channels),
-                sources,
-                &path,
-            ));
+            let entry = row.layout.condition_record(&row.table, &row.guess, &channels);
+            entries.push(relative_entry(entry, sources, &path));
         }
     }
     if entries.is_empty() {

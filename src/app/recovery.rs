@@ -12,7 +12,8 @@ use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, load
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::{GdcmApp, ReadFor, ReplySender, study_name};
+use super::files::study_name;
+use super::{GdcmApp, ReadFor, ReplySender};
 use crate::view::Bar;
 
 /// Folder of the recovery files in the program's directory.

@@ -1,5 +1,7 @@
 //! Carrying out commands: the only code that changes what the window shows.
 
+use std::fmt::Display as InWords;
+
 use egui::ViewportCommand;
 use gdcm_core::message_text::{sanitized, shortened_message};
 
@@ -10,7 +12,7 @@ use crate::view::{
     table_of,
 };
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Edit, Study};
+use gdcm_core::study::{Edit, History, Study};
 use gdcm_files::Existing;
 
 use super::{DialogPurpose, GdcmApp, PendingAction};
@@ -57,18 +59,9 @@ impl GdcmApp {
         match command {
             Command::Edit(edit) => self.decide(&edit),
             Command::EndEdit => self.state.history.seal(),
-            Command::Undo => {
-                let study = self.state.history.undo(&self.state.study);
-                self.take_study(study);
-            }
-            Command::Forget(edit) => {
-                let study = self.state.history.forget(&edit);
-                self.take_study(study);
-            }
-            Command::Redo => {
-                let study = self.state.history.redo(&self.state.study);
-                self.take_study(study);
-            }
+            Command::Undo => self.take_study(|history, study| history.undo(study)),
+            Command::Forget(edit) => self.take_study(|history, _| history.forget(&edit)),
+            Command::Redo => self.take_study(|history, study| history.redo(study)),
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
@@ -143,10 +136,7 @@ impl GdcmApp {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
                 self.done(format!("copied the table of {}", kind.name()));
             }
-            Command::AskSaveTable(kind) => {
-                let table = table_of(&self.state, kind);
-                self.ask_save_table(kind.name(), table.into());
-            }
+            Command::AskSaveTable(kind) => self.ask_save_table(kind.name(), table_of(&self.state, kind).into()),
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
             Command::SaveTable(table, path) => self.save_table(table, path),
             Command::Assembling(command) => self.assemble(command),
@@ -230,9 +220,9 @@ impl GdcmApp {
         }
     }
 
-    /// Takes up another state of the study, where there is one.
-    fn take_study(&mut self, study: Option<Study>) {
-        if let Some(study) = study {
+    /// Takes up another state of the study out of its history, where there is one.
+    fn take_study(&mut self, find: impl FnOnce(&mut History, &Study) -> Option<Study>) {
+        if let Some(study) = find(&mut self.state.history, &self.state.study) {
             self.state.study = study;
             self.study_changed();
         }
@@ -266,12 +256,13 @@ impl GdcmApp {
     }
 
     fn show_form(&mut self, form: Option<FormKind>) {
-        if form == Some(FormKind::Export) {
-            let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
-            self.state.forms.exported = all.collect();
-        }
-        if form == Some(FormKind::ExportAs) {
-            self.ask_export_as();
+        match form {
+            Some(FormKind::Export) => {
+                let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
+                self.state.forms.exported = all.collect();
+            }
+            Some(FormKind::ExportAs) => self.propose_export_name(),
+            _ => {}
         }
         // A form that asks where to save goes on with what waits for that.
         if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
@@ -303,6 +294,11 @@ impl GdcmApp {
     /// Tells the engineer that something was done.
     pub(super) fn done(&mut self, text: String) {
         self.state.notice = Some(Notice { kind: NoticeKind::Done, text: shortened_message(&sanitized(&text)) });
+    }
+
+    /// What came of something, where it went well; an error is told.
+    pub(super) fn unless_error<T, E: InWords>(&mut self, made: Result<T, E>) -> Option<T> {
+        made.map_err(|error| self.notify_error(error.to_string())).ok()
     }
 
     /// Tells the engineer that something could not be done.

@@ -12,19 +12,23 @@ use crate::view::records::RecordsCommand;
 use crate::view::start_page::OpensWith;
 use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, restore_panel_size, sheet_ui};
 use crate::view::{
-    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, reasons, start_page,
+    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, start_page,
 };
 use gdcm_core::correction::{ProblemError, Solution};
 use gdcm_core::dataset::{BundleKind, ConditionId};
 use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 
+use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
+use super::files::SavedStudy;
 use super::keyboard::{self, KeyOrder};
+use super::outputs::ReportJob;
 use super::records::DatasetOfRecords;
-use super::{
-    AnalysisJob, Autosave, BackgroundJobs, DiskWatch, Fault, LAST_WAIT, NextFocus, PendingAction, Proof, Reader, Reply,
-    ReplySender, ReportJob, SavedStudy, Setup,
-};
+use super::recovery::{Autosave, LAST_WAIT};
+use super::reload::DiskWatch;
+use super::threads::{Fault, Reader, Reply};
+use super::update::NextFocus;
+use super::{PendingAction, ReplySender, Setup};
 
 /// The program's window.
 pub struct GdcmApp {
@@ -373,7 +377,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     let Some(sheet) = asked.or(state.display.sheet) else { return };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => explanation::derivation_sheet_ui(ui, state, palette, commands),
-        Sheet::Reasons => reasons::reasons_ui(ui, state, palette, commands),
+        Sheet::Reasons => explanation::reasons_ui(ui, state, palette, commands),
         Sheet::Models => models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands),
         Sheet::Identified => models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands),
     });

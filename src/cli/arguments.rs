@@ -1,7 +1,6 @@
 //! The command line.
 
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
@@ -10,7 +9,9 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
-use super::{ExportArguments, HistoryArguments, IdentifyArguments};
+use super::identify_arguments::IdentifyArguments;
+use super::records::HistoryArguments;
+use super::results::ExportArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.
 #[derive(Debug, Parser)]
@@ -87,8 +88,8 @@ pub enum Command {
         #[command(flatten)]
         opening: OpeningArguments,
         /// Turn the models of a channel first, as with `analyze`: CHANNEL=-1. May be repeated.
-        #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
-        sign: Vec<SaidSign>,
+        #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
+        sign: Vec<ChannelSign>,
     },
     /// Write the embedded example (synthetic data) as a file to learn the format from.
     #[command(after_help = "Examples:\n  gdcm example .\n  gdcm example learn --force")]
@@ -115,7 +116,7 @@ pub struct AssembleArguments {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
     /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model; may be repeated.
-    #[arg(long, value_name = "CHANNEL=SIGN[:OF]", allow_hyphen_values = true)]
+    #[arg(long, value_name = "CHANNEL=SIGN[:OF]", value_parser = file_sign, allow_hyphen_values = true)]
     pub sign: Vec<FileSign>,
     /// Sample time of models that do not say it, in seconds; 0 where they are of continuous time.
     #[arg(long, value_name = "SECONDS", value_parser = real_number)]
@@ -209,7 +210,7 @@ pub struct StudyArguments {
     #[command(flatten)]
     pub settings: SettingOptions,
     /// Responses to hold, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON); "none" holds none. Without it, the on-axis ones.
-    #[arg(long, value_name = "PAIRS")]
+    #[arg(long, value_name = "PAIRS", value_parser = pair_list)]
     pub on: Option<PairList>,
     /// How a study is opened.
     #[command(flatten)]
@@ -219,8 +220,8 @@ pub struct StudyArguments {
     pub hold_out: Vec<i64>,
     /// Turn the models of a channel whose sign is the other way round, CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
     /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
-    #[arg(long, value_name = "CHANNEL=SIGN", allow_hyphen_values = true)]
-    pub sign: Vec<SaidSign>,
+    #[arg(long, value_name = "CHANNEL=SIGN", value_parser = channel_sign, allow_hyphen_values = true)]
+    pub sign: Vec<ChannelSign>,
     /// Outputs whose attitude the stick commands, separated by commas: their bandwidth is that of the phase alone (ADS-33E-PRF).
     #[arg(long, value_name = "OUTPUTS", value_delimiter = ',')]
     pub attitude_command: Vec<String>,
@@ -235,35 +236,41 @@ pub struct StudyArguments {
     #[arg(long)]
     pub reject_suggested: bool,
     /// Reject a model of a condition; may be repeated.
-    #[arg(long, value_name = "ID:NAME", allow_hyphen_values = true)]
+    #[arg(long, value_name = "ID:NAME", value_parser = rejection, allow_hyphen_values = true)]
     pub reject: Vec<Rejection>,
 }
 
-/// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+/// What an option says of a channel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SaidSign {
+pub struct OfChannel<T> {
     /// The channel's name.
     pub channel: String,
-    /// Whose models are turned; none where they are to be as the file has them.
-    pub of: Option<SignRole>,
+    /// What is said of it.
+    pub said: T,
 }
 
-impl FromStr for SaidSign {
-    type Err = String;
+/// Whose models are turned in a channel; none where they are to be as the file has them.
+pub type ChannelSign = OfChannel<Option<SignRole>>;
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected =
-            || format!("expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}");
-        let (channel, sign) = text.rsplit_once('=').ok_or_else(expected)?;
-        let (sign, of) = sign.split_once(':').unwrap_or((sign, SignRole::Identified.word()));
-        let of = SignRole::EACH.into_iter().find(|role| role.word() == of.trim()).ok_or_else(expected)?;
-        let of = match sign.trim() {
-            "-1" | "-" => Some(of),
-            "1" | "+1" | "+" => None,
-            _ => return Err(expected()),
-        };
-        Ok(Self { channel: channel.trim().to_owned(), of })
-    }
+/// The parts of "NZ=-1:physics": the channel, its sign, and whose it is, that of the identified models where nothing is said.
+fn sign_parts(text: &str) -> Option<(&str, f64, &str)> {
+    let (channel, rest) = text.rsplit_once('=')?;
+    let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
+    let sign = match sign.trim() {
+        "-1" | "-" => -1.0,
+        "1" | "+1" | "+" => 1.0,
+        _ => return None,
+    };
+    Some((channel.trim(), sign, of.trim()))
+}
+
+/// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+fn channel_sign(text: &str) -> Result<ChannelSign, String> {
+    let expected =
+        || format!("expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}");
+    let (channel, sign, of) = sign_parts(text).ok_or_else(expected)?;
+    let of = SignRole::EACH.into_iter().find(|role| role.word() == of).ok_or_else(expected)?;
+    Ok(OfChannel { channel: channel.to_owned(), said: (sign < 0.0).then_some(of) })
 }
 
 /// What is to be analysed, and where the results go.
@@ -297,7 +304,7 @@ pub struct FigureArguments {
     pub condition: Option<i64>,
     /// The responses, OUTPUT/INPUT, separated by commas (P/LAT,Q/LON), or "on-axis", "off-axis", "all". Without it, the on-axis
     /// ones; of net-gain, those held.
-    #[arg(long, value_name = "PAIRS")]
+    #[arg(long, value_name = "PAIRS", value_parser = pair_choice)]
     pub pair: Option<PairChoice>,
     /// The channels, separated by commas (LON,LAT), or "inputs", "outputs"; of channels. Without it, all.
     #[arg(long, value_name = "NAMES")]
@@ -321,7 +328,7 @@ pub struct FigureArguments {
     #[arg(long, value_name = "MODEL", default_value = "nominal", value_parser = one_of(AcrossRole::ALL, AcrossRole::name))]
     pub model: AcrossRole,
     /// Among the poles, the zeros of this response, OUTPUT/INPUT, in the nominal model and in the representatives.
-    #[arg(long, value_name = "PAIR")]
+    #[arg(long, value_name = "PAIR", value_parser = pair_list)]
     pub zeros: Option<PairList>,
     /// About the identified response, and among the errors, the limits of what a pilot does not notice (MUAD, MIL-STD-1797A).
     #[arg(long)]
@@ -396,17 +403,13 @@ pub enum PairChoice {
     These(PairList),
 }
 
-impl FromStr for PairChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Ok(match text {
-            "on-axis" => Self::OnAxis,
-            "off-axis" => Self::OffAxis,
-            "all" => Self::All,
-            list => Self::These(list.parse()?),
-        })
-    }
+fn pair_choice(text: &str) -> Result<PairChoice, String> {
+    Ok(match text {
+        "on-axis" => PairChoice::OnAxis,
+        "off-axis" => PairChoice::OffAxis,
+        "all" => PairChoice::All,
+        list => PairChoice::These(pair_list(list)?),
+    })
 }
 
 pub(super) fn real_number(text: &str) -> Result<f64, String> {
@@ -418,28 +421,15 @@ pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) ->
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
 }
 
-/// Responses by the names of their channels.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PairList {
-    /// Output and input of each.
-    pub pairs: Vec<(String, String)>,
-}
+/// Responses by the names of their channels, output and input of each.
+pub type PairList = Vec<(String, String)>;
 
-impl FromStr for PairList {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "none" {
-            return Ok(Self { pairs: Vec::new() });
-        }
-        let pair = |words: &str| match words.trim().split_once('/') {
-            Some((output, input)) if !output.is_empty() && !input.is_empty() => {
-                Ok((output.to_owned(), input.to_owned()))
-            }
-            _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{words}\"")),
-        };
-        Ok(Self { pairs: text.split(',').map(pair).collect::<Result<_, _>>()? })
-    }
+fn pair_list(text: &str) -> Result<PairList, String> {
+    let pair = |words: &str| match words.trim().split_once('/') {
+        Some((output, input)) if !output.is_empty() && !input.is_empty() => Ok((output.to_owned(), input.to_owned())),
+        _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{words}\"")),
+    };
+    if text == "none" { Ok(Vec::new()) } else { text.split(',').map(pair).collect() }
 }
 
 /// A model to be rejected.
@@ -451,15 +441,10 @@ pub struct Rejection {
     pub model: String,
 }
 
-impl FromStr for Rejection {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("expected ID:NAME, as 10:nominal, found \"{text}\"");
-        let (id, model) = text.split_once(':').ok_or_else(expected)?;
-        let condition = id.trim().parse().map_err(|_| expected())?;
-        Ok(Self { condition, model: model.to_owned() })
-    }
+fn rejection(text: &str) -> Result<Rejection, String> {
+    let expected = || format!("expected ID:NAME, as 10:nominal, found \"{text}\"");
+    let (id, model) = text.split_once(':').ok_or_else(expected)?;
+    Ok(Rejection { condition: id.trim().parse().map_err(|_| expected())?, model: model.to_owned() })
 }
 
 /// The sign of a channel in files that are assembled: of a role, of all, or of one model.
@@ -473,24 +458,12 @@ pub struct FileSign {
     pub of: String,
 }
 
-impl FromStr for FileSign {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || {
-            format!(
-                "expected a channel with 1 or -1, as NZ=-1, then :identified, :physics, :all or : and the file of a model, found \"{text}\""
-            )
-        };
-        let (channel, rest) = text.rsplit_once('=').ok_or_else(expected)?;
-        let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
-        let sign = match sign.trim() {
-            "-1" => -1.0,
-            "1" | "+1" => 1.0,
-            _ => return Err(expected()),
-        };
-        let (channel, of) = (channel.trim().to_owned(), of.trim().to_owned());
-        if channel.is_empty() || of.is_empty() { Err(expected()) } else { Ok(Self { channel, sign, of }) }
+fn file_sign(text: &str) -> Result<FileSign, String> {
+    match sign_parts(text).filter(|(channel, _, of)| !channel.is_empty() && !of.is_empty()) {
+        Some((channel, sign, of)) => Ok(FileSign { channel: channel.to_owned(), sign, of: of.to_owned() }),
+        None => Err(format!(
+            "expected a channel with 1 or -1, as NZ=-1, then :identified, :physics, :all or : and the file of a model, found \"{text}\""
+        )),
     }
 }
 
@@ -523,14 +496,14 @@ mod tests {
 
     #[test]
     fn a_model_name_may_hold_a_colon() {
-        let rejection: Rejection = "10:V+5kt: again".parse().unwrap();
-        assert_eq!((rejection.condition, rejection.model.as_str()), (10, "V+5kt: again"));
-        assert!("nominal".parse::<Rejection>().is_err() && "x:nominal".parse::<Rejection>().is_err());
+        let found = rejection("10:V+5kt: again").unwrap();
+        assert_eq!((found.condition, found.model.as_str()), (10, "V+5kt: again"));
+        assert!(rejection("nominal").is_err() && rejection("x:nominal").is_err());
     }
 
     #[test]
     fn a_sign_says_its_channel_and_whose_models_are_turned() {
-        let said = |text: &str| text.parse::<SaidSign>().map(|sign| (sign.channel, sign.of));
+        let said = |text: &str| channel_sign(text).map(|sign| (sign.channel, sign.said));
         assert_eq!(said("NZ=-1"), Ok(("NZ".to_owned(), Some(SignRole::Identified))));
         assert_eq!(said("az (down)=-1:all"), Ok(("az (down)".to_owned(), Some(SignRole::All))));
         assert_eq!(said("NZ=1"), Ok(("NZ".to_owned(), None)));
@@ -539,9 +512,9 @@ mod tests {
 
     #[test]
     fn pairs_are_written_output_first() {
-        let list: PairList = "P/LAT, Q/LON".parse().unwrap();
-        assert_eq!(list.pairs, [("P".to_owned(), "LAT".to_owned()), ("Q".to_owned(), "LON".to_owned())]);
-        assert!("P-LAT".parse::<PairList>().is_err() && "".parse::<PairList>().is_err());
-        assert!("none".parse::<PairList>().unwrap().pairs.is_empty());
+        let list = pair_list("P/LAT, Q/LON").unwrap();
+        assert_eq!(list, [("P".to_owned(), "LAT".to_owned()), ("Q".to_owned(), "LON".to_owned())]);
+        assert!(pair_list("P-LAT").is_err() && pair_list("").is_err());
+        assert!(pair_list("none").unwrap().is_empty());
     }
 }

@@ -1,21 +1,22 @@
 //! `gdcm check`.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_core::dataset::{BundleKind, Channel, Condition, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_core::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
 
-use super::{
-    Failure, LABEL, OpeningArguments, SaidSign, by_words, doubt_words, error, indented, labelled, listed_conditions,
-    open, say, turn,
-};
+use super::arguments::{ChannelSign, OpeningArguments};
+use super::open;
+use super::study_options::turn;
+use super::summary::doubt_words;
+use super::terminal::{Failure, by_words, error, indented, line, of_conditions, say};
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[SaidSign]) -> Result<(), Failure> {
+pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[ChannelSign]) -> Result<(), Failure> {
     let opened = match open(file, arguments) {
         Err(Failure::File(error @ FileError::Content { .. })) => return Err(all_faults(file, error)),
         opened => opened?,
@@ -45,26 +46,19 @@ fn contents(loaded: &LoadedDataset) -> String {
     let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| sanitized(&dataset.pair_name(pair))).collect();
     let on_axis = if on_axis.is_empty() { "none given: every response counts".to_owned() } else { on_axis.join(", ") };
     let band = format!("{} to {} rad/s", number(dataset.band().min()), number(dataset.band().max()));
-    let name = format!("{}, {}", sanitized(dataset.name()), loaded.origin);
-    let mut text = labelled(0, "Dataset", LABEL, &name);
-    for (label, words) in [
+    let lines = [
+        ("Dataset", format!("{}, {}", sanitized(dataset.name()), loaded.origin)),
         ("SHA-256", loaded.sha256.clone()),
         ("About", sanitized(dataset.description())),
         ("Inputs", channel_words(dataset.inputs())),
         ("Outputs", channel_words(dataset.outputs())),
         ("On-axis", on_axis),
         ("Band", band),
-    ] {
-        text.push_str(&labelled(0, label, LABEL, &words));
-    }
-    text.push_str(&labelled(0, "Conditions", LABEL, &dataset.conditions().len().to_string()));
-    text.push_str(&condition_table(dataset));
-    text.push_str(&timings(dataset));
-    text.push_str(&records(dataset));
-    for caution in &loaded.cautions {
-        text.push_str(&caution_line(caution));
-    }
-    text
+        ("Conditions", dataset.conditions().len().to_string()),
+    ];
+    let text: String = lines.iter().map(|(label, words)| line(label, words)).collect();
+    let cautions: String = loaded.cautions.iter().map(|words| caution_line(words)).collect();
+    text + &condition_table(dataset) + &timings(dataset) + &records(dataset) + &cautions
 }
 
 /// What an analysis would say of the models by themselves.
@@ -72,17 +66,15 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     // Signs and units first: what follows may come of them.
     let doubts = doubts_of_models(study, &execution)?;
-    let mut text: String = doubts.iter().map(|doubt| caution_line(&doubt_words(doubt, &study.dataset))).collect();
-    let pair_name = |pair| study.dataset.pair_name(pair);
+    let doubts = doubts.iter().map(|doubt| doubt_words(doubt, &study.dataset));
     let cautions = cautions_of_models(study, &execution)?;
-    for (conditions, words) in by_words(cautions.into_iter().map(|(id, caution)| (id, caution.words(pair_name)))) {
-        text.push_str(&caution_line(&format!("{}: {words}", listed_conditions(&conditions))));
-    }
-    Ok(text)
+    let cautions = cautions.into_iter().map(|(id, caution)| (id, caution.words(|pair| study.dataset.pair_name(pair))));
+    let cautions = by_words(cautions).into_iter().map(|(conditions, words)| of_conditions(&conditions, &words));
+    Ok(doubts.chain(cautions).map(|words| caution_line(&words)).collect())
 }
 
 fn caution_line(words: &str) -> String {
-    labelled(0, "Caution", LABEL, &sanitized(words))
+    line("Caution", &sanitized(words))
 }
 
 fn channel_words(channels: &[Channel]) -> String {
@@ -91,10 +83,24 @@ fn channel_words(channels: &[Channel]) -> String {
 }
 
 fn condition_table(dataset: &Dataset) -> String {
+    let with_unit =
+        |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)));
     let mut table =
         Table::new("", ["id", "airspeed", "altitude", "mass", "physics", "states", "identified", "states", "name"]);
     for condition in dataset.conditions() {
-        table.row(condition_row(condition));
+        let (state, [physics, identified]) =
+            (condition.flight_state(), BundleKind::BOTH.map(|of| condition.bundle(of)));
+        table.row([
+            state.id.to_string(),
+            format!("{} kt", number(state.airspeed_kt)),
+            with_unit(state.altitude_ft, "ft"),
+            with_unit(state.mass_kg, "kg"),
+            physics.len().to_string(),
+            order_words(physics),
+            identified.len().to_string(),
+            order_words(identified),
+            sanitized(&state.name),
+        ]);
     }
     indented(&table, 2)
 }
@@ -113,7 +119,7 @@ fn timings(dataset: &Dataset) -> String {
             }
             for (words, names) in named {
                 let words = format!("condition {}, {kind} {}: {words}", condition.id(), names.join(", "));
-                text.push_str(&labelled(0, "Timing", LABEL, &words));
+                text += &line("Timing", &words);
             }
         }
     }
@@ -131,27 +137,9 @@ fn records(dataset: &Dataset) -> String {
         let kinds = RecordKind::ALL.into_iter().filter_map(|kind| count(&|record| record.kind == kind, kind.word()));
         let rest = [count(&|record| record.held_out, "held out"), count(&|record| !record.used, "not used")];
         let words: Vec<String> = kinds.chain(rest.into_iter().flatten()).collect();
-        text.push_str(&labelled(0, "Records", LABEL, &format!("condition {}: {}", condition.id(), words.join(", "))));
+        text += &line("Records", &format!("condition {}: {}", condition.id(), words.join(", ")));
     }
     text
-}
-
-fn condition_row(condition: &Condition) -> [String; 9] {
-    let state = condition.flight_state();
-    let with_unit =
-        |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)));
-    let count = |kind| condition.bundle(kind).len().to_string();
-    [
-        state.id.to_string(),
-        format!("{} kt", number(state.airspeed_kt)),
-        with_unit(state.altitude_ft, "ft"),
-        with_unit(state.mass_kg, "kg"),
-        count(BundleKind::Physics),
-        order_words(condition.bundle(BundleKind::Physics)),
-        count(BundleKind::Identified),
-        order_words(condition.bundle(BundleKind::Identified)),
-        sanitized(&state.name),
-    ]
 }
 
 /// The models' numbers of states: "39", "11-14", "measured", "12, measured".
@@ -162,35 +150,27 @@ fn order_words(models: &[Model]) -> String {
     });
     let orders: Vec<usize> = orders.collect();
     let measured = (orders.len() < models.len()).then(|| "measured".to_owned());
-    let range = orders
-        .iter()
-        .min()
-        .zip(orders.iter().max())
-        .map(|(least, most)| if least == most { least.to_string() } else { format!("{least}-{most}") });
+    let ends = orders.iter().min().zip(orders.iter().max());
+    let range = ends.map(|(least, most)| if least == most { least.to_string() } else { format!("{least}-{most}") });
     range.into_iter().chain(measured).collect::<Vec<_>>().join(", ")
 }
 
 /// What a study has decided.
 fn decisions(file: &Path, study: &Study) -> String {
-    let mut text = labelled(0, "Study", LABEL, &sanitized_path(file));
+    let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {
-        let choice = study.choice(condition.id());
-        let rejected: Vec<String> = study.rejected_names(condition.id()).into_iter().map(sanitized).collect();
+        let (id, choice) = (condition.id(), study.choice(condition.id()));
+        let rejected: Vec<String> = study.rejected_names(id).into_iter().map(sanitized).collect();
         if !rejected.is_empty() {
-            let words = format!("condition {}: {}", condition.id(), rejected.join(", "));
-            text.push_str(&labelled(0, "Rejected", LABEL, &words));
+            text += &line("Rejected", &format!("condition {id}: {}", rejected.join(", ")));
         }
-        for kind in BundleKind::BOTH {
-            if let Some(name) = &choice.bundle(kind).pinned {
-                let words = format!("condition {}: {}", condition.id(), sanitized(name));
-                text.push_str(&labelled(0, "Pinned", LABEL, &words));
+        for name in BundleKind::BOTH.iter().filter_map(|kind| choice.bundle(*kind).pinned.as_ref()) {
+            text += &line("Pinned", &format!("condition {id}: {}", sanitized(name)));
+        }
+        for (label, is_so) in [("Held out", choice.held_out), ("Unscheduled", !choice.scheduled)] {
+            if is_so {
+                text += &line(label, &format!("condition {id}"));
             }
-        }
-        if choice.held_out {
-            text.push_str(&labelled(0, "Held out", LABEL, &format!("condition {}", condition.id())));
-        }
-        if !choice.scheduled {
-            text.push_str(&labelled(0, "Unscheduled", LABEL, &format!("condition {}", condition.id())));
         }
     }
     text

@@ -1,27 +1,32 @@
-//! `gdcm identify`: models out of flight records.
+//! `gdcm identify`: models out of flight records, and the dataset that they go into.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::executor::Pool;
-use gdcm_core::assembly::ChannelRule;
 use gdcm_core::dataset::{Band, BundleKind, ChannelRemedy, ChannelSide, ConditionId, ConditionRecord, Dataset};
 use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
     RecordUse, Signal, is_held,
 };
 use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{
-    ChannelList, LaidOutRecord, RecordChannels, ResamplingWish, SaidChannel, SaidConversion, median_step,
-};
+use gdcm_core::records::{LaidOutRecord, RecordChannels, median_step};
 use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
-use gdcm_files::{IdentifiedModels, OutputSet, add_identified, make_directory, relative_entry};
-
-use super::{
-    ChannelDelay, ChannelTopic, Destination, Failure, Group, IdentifyArguments, ReadRecords, TerminalProgress,
-    by_words, caution, caution_of, counted, existing, hold_out, is_called, laid_out, listed_paths, note, of_one_record,
-    record_table, said_conditions, say, say_conversions,
+use gdcm_files::variables::ReadingBudget;
+use gdcm_files::{
+    IdentifiedModels, Opened, OutputSet, add_dataset, add_identified, load_any, make_directory, relative_entry,
+    relative_folder,
 };
+
+use super::existing;
+use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};
+use super::models::counted;
+use super::records::{ReadRecords, hold_out, is_called, laid_out, record_table};
+use super::study_options::{condition_of, ids};
+use super::terminal::{
+    Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions, listed_paths, note, say,
+};
+use crate::executor::Pool;
 
 /// The file of what was found.
 const IDENTIFIED: &str = "identified.json";
@@ -31,12 +36,13 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let inputs = arguments.records.iter().chain(&arguments.into).cloned().collect();
     let mut outputs = OutputSet::new(existing(arguments.force), inputs);
     let mut destination = Destination::asked(arguments)?;
-    let band = band(arguments, destination.as_ref())?;
-    let mut channels = channels(arguments, destination.as_ref(), band)?;
+    let dataset = destination.as_ref().map(|of| of.dataset.as_ref());
+    let band = arguments.band(dataset)?;
+    let mut channels = arguments.channels(dataset, band)?;
     let Tasks { tasks, unread, reading, copies } = tasks(arguments, destination.as_ref(), &mut channels, band)?;
     let files: Vec<PathBuf> = tasks.iter().map(|task| identified_path(arguments, task)).collect();
-    let dataset = destination.iter().map(|of| of.path.as_path());
-    outputs.check(&files.iter().map(PathBuf::as_path).chain(dataset).collect::<Vec<&Path>>())?;
+    let places = files.iter().chain(destination.iter().map(|of| &of.path));
+    outputs.check(&places.map(PathBuf::as_path).collect::<Vec<&Path>>())?;
     say(&tasks.iter().map(IdentificationTask::table).collect::<String>())?;
     let (mut lines, mut taken, mut of_use) = (String::new(), 0, false);
     let mut cautions = Vec::new();
@@ -78,16 +84,13 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         lines += &outcome(task, file, &found);
         taken += 1;
     }
-    let (of_conditions, of_all): (Vec<_>, Vec<_>) =
-        cautions.into_iter().partition(|(condition, _)| condition.is_some());
-    of_all.iter().for_each(|(_, words)| caution(words));
-    let of_conditions = of_conditions.into_iter().filter_map(|(condition, words)| Some((condition?, words)));
-    by_words(of_conditions).iter().for_each(|(conditions, words)| caution_of(conditions, words));
+    by_words(cautions).iter().for_each(|(conditions, words)| caution_of(conditions, words));
     if taken == 0 {
         return Err(Failure::NoModels { reason: format!("in none of {} conditions", tasks.len()) });
     }
     if let Some(destination) = &destination {
-        let path = sanitized_path(destination.add(&mut outputs)?);
+        add_dataset(&destination.dataset, &destination.path, &mut outputs)?;
+        let path = sanitized_path(&destination.path);
         lines += &format!("{path}: identified models of {}\n", counted(taken, "condition"));
     }
     outputs.persist()?;
@@ -129,8 +132,7 @@ impl IdentificationTask {
         arguments: &IdentifyArguments,
     ) -> Result<Self, Failure> {
         let request = IdentificationRequest::of(records.iter(), preparation.clone(), [band.min(), band.max()]);
-        let refused = |why| Failure::Option { option: "--hold-out", reason: format!("{}{why}", label(condition)) };
-        let mut request = request.map_err(refused)?;
+        let mut request = request.map_err(|why| Failure::option("--hold-out", format!("{}{why}", label(condition))))?;
         arguments.search().set(&mut request.options);
         request.options.references = arguments.references().len();
         Ok(Self { request, condition, records })
@@ -185,13 +187,9 @@ impl IdentificationTask {
             None => record_table(&self.records, 0),
         }
     }
-
-    /// What stands before words about it.
-    fn label(&self) -> String {
-        label(self.condition)
-    }
 }
 
+/// What stands before words about a condition.
 fn label(condition: Option<ConditionId>) -> String {
     condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
@@ -218,7 +216,7 @@ fn tasks(
         laid_out(arguments, channels, destination.map(|of| of.dataset.as_ref()))?;
     hold_out(&arguments.hold_out, &mut records)?;
     put_right(arguments, &mut records, channels)?;
-    let mut preparation = preparation(channels, &arguments.delay)?;
+    let mut preparation = arguments.preparation(channels)?;
     hold(&mut preparation, &records, channels);
     let groups = match destination {
         Some(destination) => destination.groups(records)?,
@@ -245,94 +243,12 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
     let held_out = found.held_out_cost.map_or_else(String::new, |cost| format!(", of what is held out {cost:.2}"));
     format!(
         "{}{}: {}; order {}, J per degree of freedom {:.2}{held_out}\n",
-        task.label(),
+        label(task.condition),
         sanitized_path(file),
         counted(2 + found.bundle.len(), "model"),
         found.refined.order().unwrap_or_default(),
         found.cost,
     )
-}
-
-/// The channels asked for, with what is said of their samples.
-fn channels(
-    arguments: &IdentifyArguments,
-    destination: Option<&Destination>,
-    band: Band,
-) -> Result<RecordChannels, Failure> {
-    let mut channels = named_channels(arguments, destination)?;
-    for reference in arguments.references() {
-        if channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == reference.name) {
-            let reason = format!("{} is an input or an output already; a reference is neither", reference.name);
-            return Err(Failure::Option { option: "--reference", reason });
-        }
-        // Read as an input, after those of the model.
-        channels.inputs.push(reference.rule());
-    }
-    let unknown =
-        |option, channel: &String| Failure::Option { option, reason: format!("{channel} is none of the channels") };
-    for (at, ChannelTopic { channel, column }) in arguments.topic.iter().enumerate() {
-        if arguments.topic[..at].iter().any(|before| before.channel == *channel) {
-            let reason = format!("{channel} stands twice; a channel is found in one place");
-            return Err(Failure::Option { option: "--topic", reason });
-        }
-        let rule = channels.inputs.iter_mut().chain(&mut channels.outputs).find(|rule| rule.name == *channel);
-        rule.ok_or_else(|| unknown("--topic", channel))?.aliases = vec![column.clone()];
-    }
-    if let Some(held) = arguments.held.iter().find(|held| channels.inputs.iter().all(|rule| rule.name != **held)) {
-        return Err(Failure::Option { option: "--held", reason: format!("{held} is none of the inputs") });
-    }
-    channels.resampling = ResamplingWish {
-        band_end: Some(band.max()),
-        rate_hz: arguments.resample,
-        held: arguments.held.iter().cloned().collect(),
-    };
-    say_conversions("--unit", &arguments.unit, &mut channels)?;
-    let factors = arguments.factor.iter().filter(|of| of_one_record(&of.channel).is_none());
-    say_conversions("--factor", factors, &mut channels)?;
-    Ok(channels)
-}
-
-/// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
-fn named_channels(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<RecordChannels, Failure> {
-    let Some(destination) = destination else {
-        let rules =
-            |list: &Option<ChannelList>| list.iter().flat_map(|list| &list.channels).map(SaidChannel::rule).collect();
-        return Ok(RecordChannels {
-            inputs: rules(&arguments.inputs),
-            outputs: rules(&arguments.outputs),
-            ..RecordChannels::default()
-        });
-    };
-    let mut channels = RecordChannels::of_dataset(&destination.dataset);
-    for (option, list, rules) in [
-        ("--inputs", &arguments.inputs, &mut channels.inputs),
-        ("--outputs", &arguments.outputs, &mut channels.outputs),
-    ] {
-        for SaidChannel { name, unit, column } in list.iter().flat_map(|list| &list.channels) {
-            let Some(rule) = rules.iter_mut().find(|rule| rule.name == *name) else {
-                let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
-                let reason = format!("the dataset has no {name} there; it has {}", names.join(", "));
-                return Err(Failure::Option { option, reason });
-            };
-            if !unit.is_empty() && *unit != rule.unit {
-                let reason = format!("{name} has the unit {} in the dataset, not {unit}", rule.unit);
-                return Err(Failure::Option { option, reason });
-            }
-            rule.aliases = column.iter().cloned().collect();
-            rule.unit_in_files = Some(unit.clone()).filter(|unit| !unit.is_empty());
-        }
-    }
-    Ok(channels)
-}
-
-fn band(arguments: &IdentifyArguments, destination: Option<&Destination>) -> Result<Band, Failure> {
-    match (arguments.band.as_deref(), destination) {
-        (Some(&[min, max]), _) => {
-            Band::new(min, max).map_err(|error| Failure::Option { option: "--band", reason: error.to_string() })
-        }
-        (_, Some(destination)) => Ok(destination.dataset.band()),
-        _ => Err(Failure::Option { option: "--band", reason: "expected two frequencies".to_owned() }),
-    }
 }
 
 /// What the inputs that are held are prepared as, in records that were not brought to another clock: those moved their stamps.
@@ -358,67 +274,141 @@ fn put_right(
     records: &mut [LaidOutRecord],
     channels: &RecordChannels,
 ) -> Result<(), Failure> {
-    let delays = arguments.delay.iter().map(|of| {
-        let remedy = ChannelRemedy { delay_s: of.delay_s, ..ChannelRemedy::NONE };
-        ("--delay", &of.channel, remedy)
-    });
-    let factors = arguments.factor.iter().filter_map(|of| match of.said {
-        SaidConversion::Factor(factor) => {
-            Some(("--factor", &of.channel, ChannelRemedy { factor, ..ChannelRemedy::NONE }))
-        }
-        SaidConversion::Unit(_) => None,
-    });
+    let delays = arguments
+        .delay
+        .iter()
+        .map(|of| ("--delay", &of.channel, ChannelRemedy { delay_s: of.said, ..ChannelRemedy::NONE }));
+    let factors = arguments
+        .factor
+        .iter()
+        .map(|of| ("--factor", &of.channel, ChannelRemedy { factor: of.said, ..ChannelRemedy::NONE }));
     let mut done: Vec<(&str, String, &str)> = Vec::new();
     for (option, said, remedy) in delays.chain(factors) {
         let Some((record, channel)) = of_one_record(said) else { continue };
-        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == channel) {
-            return Err(Failure::Option { option, reason: format!("{channel} is none of the channels") });
+        if !has_channel(channels, channel) {
+            return Err(unknown(option, channel));
         }
         let mut of_it = records.iter_mut().filter(|of| is_called(&of.table, record)).peekable();
         if of_it.peek().is_none() {
-            return Err(Failure::Option { option, reason: format!("\"{record}\" is none of the records") });
+            return Err(Failure::option(option, format!("\"{record}\" is none of the records")));
         }
         for of in of_it {
             let of_channel = (option, of.table.name.clone(), channel);
             if done.contains(&of_channel) {
-                return Err(Failure::Option { option, reason: format!("{channel} of {record} stands twice") });
+                return Err(Failure::option(option, format!("{channel} of {record} stands twice")));
             }
             done.push(of_channel);
             let mut layout = of.layout.clone();
             layout.put_right(&BTreeMap::from([(channel.to_owned(), remedy)]), channels);
             *of = of.laid_out(layout, channels);
             if let Some(problem) = of.problems.first() {
-                return Err(Failure::Option { option, reason: format!("{record}: {problem}") });
+                return Err(Failure::option(option, format!("{record}: {problem}")));
             }
         }
     }
     Ok(())
 }
 
-/// How the channels are prepared: their known delays are taken out.
-fn preparation(channels: &RecordChannels, delays: &[ChannelDelay]) -> Result<Preparation, Failure> {
-    let delays: Vec<&ChannelDelay> = delays.iter().filter(|of| of_one_record(&of.channel).is_none()).collect();
-    let is_known =
-        |delay: &&&ChannelDelay| channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == delay.channel);
-    if let Some(unknown) = delays.iter().find(|delay| !is_known(delay)) {
-        let reason = format!("{} is none of the channels", unknown.channel);
-        return Err(Failure::Option { option: "--delay", reason });
+/// Records that models are identified from together, and the condition that they are of; none without a dataset.
+type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
+
+/// A dataset that models are put into.
+struct Destination {
+    dataset: Arc<Dataset>,
+    /// Where it is written.
+    path: PathBuf,
+    /// The condition; none where each record goes to the one that its name says.
+    condition: Option<ConditionId>,
+}
+
+impl Destination {
+    /// The dataset that the command line names, if any.
+    fn asked(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
+        let Some(path) = arguments.into.as_deref() else { return Ok(None) };
+        let dataset = match load_any(path, &ReadingBudget::default())? {
+            Opened::Dataset(loaded) => loaded.dataset,
+            Opened::Study(_) => {
+                return Err(Failure::option("--into", "expected a dataset, found a study; give the study's dataset"));
+            }
+        };
+        let condition = arguments.condition.map(|id| condition_of(&dataset, id)).transpose()?;
+        let written = arguments.out.join(path.file_name().unwrap_or_default());
+        let folder = relative_folder(path.parent().unwrap_or(Path::new("")), &written);
+        let dataset = Arc::new(moved(&dataset, &folder, arguments.description.as_deref())?);
+        Ok(Some(Self { dataset, path: written, condition }))
     }
-    let is_again = |at: usize| delays[..at].iter().any(|before| before.channel == delays[at].channel);
-    if let Some(again) = (0..delays.len()).find(|at| is_again(*at)) {
-        let reason = format!("{} stands twice", delays[again].channel);
-        return Err(Failure::Option { option: "--delay", reason });
-    }
-    let prepared = |rule: &ChannelRule| {
-        let delay = delays.iter().find(|delay| delay.channel == rule.name);
-        ChannelPreparation {
-            delay_s: delay.map_or(0.0, |delay| delay.delay_s),
-            ..ChannelPreparation::named(rule.name.clone())
+
+    /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
+    fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<Group>, Failure> {
+        if let Some(wanted) = self.condition {
+            let is_of = |record: &LaidOutRecord| record.guess.condition.is_none_or(|said| ConditionId(said) == wanted);
+            let count = records.len();
+            let (own, others): (Vec<_>, Vec<_>) = records.into_iter().partition(is_of);
+            if !others.is_empty() {
+                caution(&format!(
+                    "{} of {count} records left out: their names say condition {}, not {wanted}",
+                    others.len(),
+                    said_conditions(&others)
+                ));
+            }
+            if own.is_empty() {
+                let reason = format!("no record is left for condition {wanted}; rename what belongs to it");
+                return Err(Failure::option("--condition", reason));
+            }
+            return Ok(vec![(self.condition, own)]);
         }
+        let mut groups: Vec<(ConditionId, Vec<LaidOutRecord>)> =
+            self.dataset.conditions().iter().map(|condition| (condition.id(), Vec::new())).collect();
+        for record in records {
+            let id = record.guess.condition_of(&self.dataset);
+            match groups.iter_mut().find(|(condition, _)| Some(*condition) == id) {
+                Some((_, of_condition)) => of_condition.push(record),
+                None => caution(&format!("{}: left out: its name says no condition of the dataset", record.table.name)),
+            }
+        }
+        let without: Vec<ConditionId> =
+            groups.iter().filter(|(_, records)| records.is_empty()).map(|(id, _)| *id).collect();
+        if !without.is_empty() {
+            let of = listed_conditions(&without);
+            note(&format!("{of}: no records; the identified models there stay as they are"));
+        }
+        groups.retain(|(_, records)| !records.is_empty());
+        if groups.is_empty() {
+            let reason = format!("no name says a condition of the dataset ({}), as cond03 does", ids(&self.dataset));
+            return Err(Failure::option("--every-condition", reason));
+        }
+        Ok(groups.into_iter().map(|(id, records)| (Some(id), records)).collect())
+    }
+
+    /// Puts models and records into a condition.
+    fn take(&mut self, condition: ConditionId, taken: &AdoptedModels) -> Result<(), Failure> {
+        let dataset = taken
+            .put_into(&self.dataset, condition)
+            .map_err(|error| Failure::NoModels { reason: format!("the dataset does not take the models: {error}") })?;
+        self.dataset = Arc::new(dataset);
+        Ok(())
+    }
+}
+
+/// The conditions that names of records say, as "3, 7".
+fn said_conditions(records: &[LaidOutRecord]) -> String {
+    let said: BTreeSet<i64> = records.iter().filter_map(|record| record.guess.condition).collect();
+    said.iter().map(i64::to_string).collect::<Vec<_>>().join(", ")
+}
+
+/// The dataset as it is written elsewhere: its records are found by way of `folder` from there, and it is described as asked.
+fn moved(dataset: &Dataset, folder: &str, description: Option<&str>) -> Result<Dataset, Failure> {
+    let mut header = dataset.header();
+    header.description = description.map_or(header.description, ToOwned::to_owned);
+    let found = |record: &ConditionRecord| {
+        let stays = folder.is_empty() || folder == "." || Path::new(&record.file).is_absolute();
+        let file = if stays { record.file.clone() } else { format!("{folder}/{}", record.file) };
+        ConditionRecord { file, ..record.clone() }
     };
-    Ok(Preparation {
-        inputs: channels.inputs.iter().map(prepared).collect(),
-        outputs: channels.outputs.iter().map(prepared).collect(),
-        ..Preparation::of(&[], &[])
-    })
+    let conditions = dataset
+        .conditions()
+        .iter()
+        .map(|condition| condition.as_ref().clone().with_records(condition.records().iter().map(found).collect()));
+    let conditions = conditions.collect::<Result<_, _>>().map_err(|error| Failure::option("--description", error))?;
+    Dataset::new(header, conditions).map_err(|error| Failure::option("--description", error))
 }

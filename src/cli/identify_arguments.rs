@@ -1,15 +1,18 @@
-//! The command line of `gdcm identify`.
+//! The command line of `gdcm identify`, and the channels that it asks for.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_core::identification::SearchSpace;
-use gdcm_core::records::{ChannelList, RecordChannels, SaidChannel, SaidConversion};
+use gdcm_core::assembly::ChannelRule;
+use gdcm_core::dataset::{Band, Dataset};
+use gdcm_core::identification::{ChannelPreparation, Preparation, SearchSpace};
+use gdcm_core::records::{ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion};
 use gdcm_core::study::OfferedModels;
 
-use super::{Failure, real_number, whole_number};
+use super::arguments::{OfChannel, real_number, whole_number};
+use super::terminal::Failure;
 
 /// Which flight records models are to be identified from, and how.
 #[derive(Debug, Args)]
@@ -37,8 +40,8 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "NAME")]
     pub time: Option<String>,
     /// Where a channel is found: its topic and the field of it (TOPIC.FIELD), or its column; may be repeated.
-    #[arg(long, value_name = "CHANNEL=TOPIC.FIELD")]
-    pub topic: Vec<ChannelTopic>,
+    #[arg(long, value_name = "CHANNEL=TOPIC.FIELD", value_parser = channel_topic)]
+    pub topic: Vec<OfChannel<String>>,
     /// Samples in a second that the records are brought to, every channel through the same low-pass; without it, topics with clocks of their own are brought to a rate that the band takes, and nothing else is resampled.
     #[arg(long, value_name = "HZ", value_parser = positive_rate, allow_negative_numbers = true)]
     pub resample: Option<f64>,
@@ -46,7 +49,7 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "CHANNEL")]
     pub held: Vec<String>,
     /// A part of the records, from A to B seconds on their own clock, is a record of its own; of one record alone with its name before (RECORD:A:B); may be repeated, and --hold-out A:B holds one out.
-    #[arg(long, value_name = "A:B", allow_hyphen_values = true)]
+    #[arg(long, value_name = "A:B", value_parser = record_part, allow_hyphen_values = true)]
     pub part: Vec<RecordPart>,
     /// Samples in a second, in place of a column of the time.
     #[arg(long, value_name = "HZ", value_parser = real_number, conflicts_with = "time", allow_negative_numbers = true)]
@@ -55,8 +58,8 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "FILE")]
     pub hold_out: Vec<String>,
     /// A known delay of a channel, in seconds, positive where it is logged late; in one record alone with its name before (RECORD:CHANNEL=SECONDS); may be repeated.
-    #[arg(long, value_name = "CHANNEL=SECONDS", allow_hyphen_values = true)]
-    pub delay: Vec<ChannelDelay>,
+    #[arg(long, value_name = "CHANNEL=SECONDS", value_parser = channel_delay, allow_hyphen_values = true)]
+    pub delay: Vec<OfChannel<f64>>,
     /// Recorded references that drove the loop from outside (a chirp, a position reference), in the same way as inputs: gusts fed back into the inputs no longer bias the response.
     #[arg(long, value_name = "NAMES")]
     pub reference: Option<ChannelList>,
@@ -70,11 +73,11 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "RAD/S", value_parser = real_number)]
     pub pole: Vec<f64>,
     /// The unit of a channel's samples, whatever their file says; may be repeated.
-    #[arg(long, value_name = "CHANNEL=UNIT", value_parser = said_unit)]
-    pub unit: Vec<ChannelConversion>,
+    #[arg(long, value_name = "CHANNEL=UNIT", value_parser = channel_unit)]
+    pub unit: Vec<OfChannel<String>>,
     /// What a channel's samples are multiplied by, negative where the sign is the other one; in one record alone with its name before (RECORD:CHANNEL=X); may be repeated.
-    #[arg(long, value_name = "CHANNEL=X", value_parser = said_factor, allow_hyphen_values = true)]
-    pub factor: Vec<ChannelConversion>,
+    #[arg(long, value_name = "CHANNEL=X", value_parser = channel_factor, allow_hyphen_values = true)]
+    pub factor: Vec<OfChannel<f64>>,
     /// Dataset that the models are put into; it is written anew, beside identified.json.
     #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
@@ -108,6 +111,114 @@ impl IdentifyArguments {
     pub fn search(&self) -> SearchSpace {
         SearchSpace { orders: self.order.clone(), pasts: self.past.clone(), poles: self.pole.clone() }
     }
+
+    /// The band to identify, which is that of the dataset where none is said.
+    pub(super) fn band(&self, dataset: Option<&Dataset>) -> Result<Band, Failure> {
+        match (self.band.as_deref(), dataset) {
+            (Some(&[min, max]), _) => Band::new(min, max).map_err(|error| Failure::option("--band", error)),
+            (_, Some(dataset)) => Ok(dataset.band()),
+            _ => Err(Failure::option("--band", "expected two frequencies")),
+        }
+    }
+
+    /// The channels asked for, with what is said of their samples.
+    pub(super) fn channels(&self, dataset: Option<&Dataset>, band: Band) -> Result<RecordChannels, Failure> {
+        let mut channels = self.named_channels(dataset)?;
+        for reference in self.references() {
+            if has_channel(&channels, &reference.name) {
+                let reason = format!("{} is an input or an output already; a reference is neither", reference.name);
+                return Err(Failure::option("--reference", reason));
+            }
+            // Read as an input, after those of the model.
+            channels.inputs.push(reference.rule());
+        }
+        if let Some(channel) = said_twice(&self.topic) {
+            return Err(Failure::option("--topic", format!("{channel} stands twice; a channel is found in one place")));
+        }
+        for OfChannel { channel, said } in &self.topic {
+            let rule = channels.inputs.iter_mut().chain(&mut channels.outputs).find(|rule| rule.name == *channel);
+            rule.ok_or_else(|| unknown("--topic", channel))?.aliases = vec![said.clone()];
+        }
+        if let Some(held) = self.held.iter().find(|held| channels.inputs.iter().all(|rule| rule.name != **held)) {
+            return Err(Failure::option("--held", format!("{held} is none of the inputs")));
+        }
+        channels.resampling = ResamplingWish {
+            band_end: Some(band.max()),
+            rate_hz: self.resample,
+            held: self.held.iter().cloned().collect(),
+        };
+        say_conversions("--unit", &self.unit, SaidConversion::Unit, &mut channels)?;
+        let factors = self.factor.iter().filter(|of| of_one_record(&of.channel).is_none());
+        say_conversions("--factor", factors, SaidConversion::Factor, &mut channels)?;
+        Ok(channels)
+    }
+
+    /// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+    fn named_channels(&self, dataset: Option<&Dataset>) -> Result<RecordChannels, Failure> {
+        fn said(list: &Option<ChannelList>) -> impl Iterator<Item = &SaidChannel> {
+            list.iter().flat_map(|list| &list.channels)
+        }
+        let Some(dataset) = dataset else {
+            let [inputs, outputs] =
+                [&self.inputs, &self.outputs].map(|list| said(list).map(SaidChannel::rule).collect());
+            return Ok(RecordChannels { inputs, outputs, ..RecordChannels::default() });
+        };
+        let mut channels = RecordChannels::of_dataset(dataset);
+        for (option, list, rules) in
+            [("--inputs", &self.inputs, &mut channels.inputs), ("--outputs", &self.outputs, &mut channels.outputs)]
+        {
+            for SaidChannel { name, unit, column } in said(list) {
+                let Some(rule) = rules.iter_mut().find(|rule| rule.name == *name) else {
+                    let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
+                    let reason = format!("the dataset has no {name} there; it has {}", names.join(", "));
+                    return Err(Failure::option(option, reason));
+                };
+                if !unit.is_empty() && *unit != rule.unit {
+                    let reason = format!("{name} has the unit {} in the dataset, not {unit}", rule.unit);
+                    return Err(Failure::option(option, reason));
+                }
+                rule.aliases = column.iter().cloned().collect();
+                rule.unit_in_files = Some(unit.clone()).filter(|unit| !unit.is_empty());
+            }
+        }
+        Ok(channels)
+    }
+
+    /// How the channels are prepared: their known delays are taken out.
+    pub(super) fn preparation(&self, channels: &RecordChannels) -> Result<Preparation, Failure> {
+        let delays: Vec<_> = self.delay.iter().filter(|of| of_one_record(&of.channel).is_none()).collect();
+        if let Some(of) = delays.iter().find(|of| !has_channel(channels, &of.channel)) {
+            return Err(unknown("--delay", &of.channel));
+        }
+        if let Some(channel) = said_twice(delays.iter().copied()) {
+            return Err(Failure::option("--delay", format!("{channel} stands twice")));
+        }
+        let prepared = |rule: &ChannelRule| {
+            let delay_s = delays.iter().find(|of| of.channel == rule.name).map_or(0.0, |of| of.said);
+            ChannelPreparation { delay_s, ..ChannelPreparation::named(rule.name.clone()) }
+        };
+        Ok(Preparation {
+            inputs: channels.inputs.iter().map(prepared).collect(),
+            outputs: channels.outputs.iter().map(prepared).collect(),
+            ..Preparation::of(&[], &[])
+        })
+    }
+}
+
+/// Whether there is a channel of this name.
+pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
+    channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == name)
+}
+
+/// An option is about a channel that there is not.
+pub(super) fn unknown(option: &'static str, channel: &str) -> Failure {
+    Failure::option(option, format!("{channel} is none of the channels"))
+}
+
+/// The first channel of which an option says something once more.
+pub(super) fn said_twice<'a, T: 'a>(said: impl IntoIterator<Item = &'a OfChannel<T>>) -> Option<&'a str> {
+    let mut seen = BTreeSet::new();
+    said.into_iter().map(|of| of.channel.as_str()).find(|channel| !seen.insert(*channel))
 }
 
 /// Which models of an identification are put into a dataset.
@@ -134,73 +245,61 @@ impl OfferedChoice {
     }
 }
 
-/// What is said of the samples of a channel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelConversion {
-    /// The channel.
-    pub channel: String,
-    /// Its unit or factor.
-    pub said: SaidConversion,
-}
-
 /// Takes what an option says of the samples of channels, once of each.
-pub(super) fn say_conversions<'c>(
+pub(super) fn say_conversions<'a, T: Clone + 'a>(
     option: &'static str,
-    said: impl IntoIterator<Item = &'c ChannelConversion>,
+    said: impl IntoIterator<Item = &'a OfChannel<T>>,
+    conversion: fn(T) -> SaidConversion,
     channels: &mut RecordChannels,
 ) -> Result<(), Failure> {
-    for ChannelConversion { channel, said } in said {
-        let refused = |reason: String| Err(Failure::Option { option, reason });
-        if !channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == *channel) {
-            return refused(format!("{channel} is none of the channels"));
+    for OfChannel { channel, said } in said {
+        if !has_channel(channels, channel) {
+            return Err(unknown(option, channel));
         }
-        if channels.said.insert(channel.clone(), said.clone()).is_some() {
-            return refused(format!("{channel} has a unit or a factor already"));
+        if channels.said.insert(channel.clone(), conversion(said.clone())).is_some() {
+            return Err(Failure::option(option, format!("{channel} has a unit or a factor already")));
         }
     }
     Ok(())
 }
 
+/// A channel, and what `read` makes of the text behind it; none where there is no channel, or that is nothing.
+fn of_channel<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Option<OfChannel<T>> {
+    let (channel, said) = text.split_once('=')?;
+    let channel = Some(channel.trim()).filter(|channel| !channel.is_empty())?.to_owned();
+    Some(OfChannel { channel, said: read(said.trim())? })
+}
+
+fn any_text(text: &str) -> Option<String> {
+    Some(text.to_owned()).filter(|text| !text.is_empty())
+}
+
 /// A channel with the unit of its samples: "P=rad/s".
-pub(super) fn said_unit(text: &str) -> Result<ChannelConversion, String> {
-    match text.split_once('=').map(|(channel, unit)| (channel.trim(), unit.trim())) {
-        Some((channel, unit)) if !channel.is_empty() && !unit.is_empty() => {
-            Ok(ChannelConversion { channel: channel.to_owned(), said: SaidConversion::Unit(unit.to_owned()) })
-        }
-        _ => Err(format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\"")),
-    }
+pub(super) fn channel_unit(text: &str) -> Result<OfChannel<String>, String> {
+    of_channel(text, any_text).ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
 }
 
-fn said_factor(text: &str) -> Result<ChannelConversion, String> {
-    let said = text.split_once('=').and_then(|(channel, factor)| Some((channel.trim(), factor.trim().parse().ok()?)));
-    match said.filter(|(channel, factor): &(&str, f64)| !channel.is_empty() && factor.is_finite() && *factor != 0.0) {
-        Some((channel, factor)) => {
-            Ok(ChannelConversion { channel: channel.to_owned(), said: SaidConversion::Factor(factor) })
-        }
-        None => Err(format!("expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\"")),
-    }
+fn channel_factor(text: &str) -> Result<OfChannel<f64>, String> {
+    of_channel(text, |factor| factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor != 0.0))
+        .ok_or_else(|| format!("expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\""))
 }
 
-/// Where a channel is found.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ChannelTopic {
-    /// The channel.
-    pub channel: String,
-    /// The topic and its field, or a column.
-    pub column: String,
+/// Where a channel is found: the topic and its field, or a column.
+fn channel_topic(text: &str) -> Result<OfChannel<String>, String> {
+    of_channel(text, |column| any_text(column.trim_matches('"')))
+        .ok_or_else(|| format!("expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""))
 }
 
-impl FromStr for ChannelTopic {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let said = text.split_once('=').map(|(channel, column)| (channel.trim(), column.trim().trim_matches('"')));
-        match said.filter(|(channel, column)| !channel.is_empty() && !column.is_empty()) {
-            Some((channel, column)) => Ok(Self { channel: channel.to_owned(), column: column.to_owned() }),
-            None => {
-                Err(format!("expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""))
-            }
-        }
+/// A known delay of a channel \[s\], positive where the channel is logged late.
+fn channel_delay(text: &str) -> Result<OfChannel<f64>, String> {
+    /// Beyond this a delay is no delay of a sensor or a bus \[s\].
+    const MOST_S: f64 = 2.0;
+    let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
+    let delay = of_channel(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;
+    if (-MOST_S..=MOST_S).contains(&delay.said) {
+        Ok(delay)
+    } else {
+        Err(format!("{}; a delay is from -{MOST_S} to {MOST_S} s", expected()))
     }
 }
 
@@ -220,20 +319,16 @@ pub struct RecordPart {
     pub part_s: [f64; 2],
 }
 
-impl FromStr for RecordPart {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("expected A:B, as 29:58, or RECORD:A:B, with A less than B, found \"{text}\"");
-        let (rest, to) = text.rsplit_once(':').ok_or_else(expected)?;
-        let (record, from) = rest.rsplit_once(':').map_or((None, rest), |(record, from)| (Some(record), from));
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-        match number(from).zip(number(to)) {
-            Some((from, to)) if from < to && record.is_none_or(|record| !record.trim().is_empty()) => {
-                Ok(Self { record: record.map(|record| record.trim().to_owned()), part_s: [from, to] })
-            }
-            _ => Err(expected()),
+pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
+    let expected = || format!("expected A:B, as 29:58, or RECORD:A:B, with A less than B, found \"{text}\"");
+    let (rest, to) = text.rsplit_once(':').ok_or_else(expected)?;
+    let (record, from) = rest.rsplit_once(':').map_or((None, rest), |(record, from)| (Some(record.trim()), from));
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    match number(from).zip(number(to)) {
+        Some((from, to)) if from < to && record != Some("") => {
+            Ok(RecordPart { record: record.map(ToOwned::to_owned), part_s: [from, to] })
         }
+        _ => Err(expected()),
     }
 }
 
@@ -242,60 +337,32 @@ pub fn of_one_record(said: &str) -> Option<(&str, &str)> {
     said.rsplit_once(':').filter(|(record, channel)| !record.is_empty() && !channel.is_empty())
 }
 
-/// A known delay of a channel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ChannelDelay {
-    /// The channel.
-    pub channel: String,
-    /// The delay \[s\], positive where the channel is logged late.
-    pub delay_s: f64,
-}
-
-impl FromStr for ChannelDelay {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        /// Beyond this a delay is no delay of a sensor or a bus \[s\].
-        const MOST_S: f64 = 2.0;
-        let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
-        let (channel, seconds) = text.split_once('=').ok_or_else(expected)?;
-        let delay_s: f64 = seconds.trim().parse().map_err(|_| expected())?;
-        if !(-MOST_S..=MOST_S).contains(&delay_s) || channel.trim().is_empty() {
-            return Err(format!("{}; a delay is from -{MOST_S} to {MOST_S} s", expected()));
-        }
-        Ok(Self { channel: channel.trim().to_owned(), delay_s })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_unit_or_a_factor_is_of_a_channel() {
-        assert_eq!(said_unit("P = rad/s").unwrap().said, SaidConversion::Unit("rad/s".into()));
-        assert_eq!(said_factor("NZ=-1").unwrap().said, SaidConversion::Factor(-1.0));
-        assert!(["P", "P=", "=1"].iter().all(|wrong| said_unit(wrong).is_err()));
-        assert!(["P", "P=x", "P=0", "P=NaN", "=1"].iter().all(|wrong| said_factor(wrong).is_err()));
+        assert_eq!(channel_unit("P = rad/s").unwrap().said, "rad/s");
+        assert_eq!(channel_factor("NZ=-1").unwrap().said, -1.0);
+        assert!(["P", "P=", "=1"].iter().all(|wrong| channel_unit(wrong).is_err()));
+        assert!(["P", "P=x", "P=0", "P=NaN", "=1"].iter().all(|wrong| channel_factor(wrong).is_err()));
     }
 
     #[test]
     fn a_part_is_of_all_records_or_of_one() {
-        assert_eq!("29:58".parse(), Ok(RecordPart { record: None, part_s: [29.0, 58.0] }));
-        assert_eq!("log:1:-1:5".parse(), Ok(RecordPart { record: Some("log:1".into()), part_s: [-1.0, 5.0] }));
-        assert!(
-            ["29", "58:29", "5:5", ":1:2", "a:b", "0:inf"].iter().all(|wrong| wrong.parse::<RecordPart>().is_err())
-        );
+        assert_eq!(record_part("29:58"), Ok(RecordPart { record: None, part_s: [29.0, 58.0] }));
+        assert_eq!(record_part("log:1:-1:5"), Ok(RecordPart { record: Some("log:1".into()), part_s: [-1.0, 5.0] }));
+        assert!(["29", "58:29", "5:5", ":1:2", "a:b", "0:inf"].iter().all(|wrong| record_part(wrong).is_err()));
         assert!(positive_rate("50") == Ok(50.0) && ["0", "-1", "x"].iter().all(|wrong| positive_rate(wrong).is_err()));
-        let topic: ChannelTopic = "P = a.b[0]".parse().unwrap();
-        assert_eq!((topic.channel.as_str(), topic.column.as_str()), ("P", "a.b[0]"));
+        assert_eq!(channel_topic("P = a.b[0]"), Ok(OfChannel { channel: "P".into(), said: "a.b[0]".into() }));
     }
 
     #[test]
     fn a_delay_is_of_a_channel_and_short() {
-        assert_eq!("P=-0.02".parse(), Ok(ChannelDelay { channel: "P".into(), delay_s: -0.02 }));
+        assert_eq!(channel_delay("P=-0.02"), Ok(OfChannel { channel: "P".into(), said: -0.02 }));
         for wrong in ["P", "P=x", "P=20", "=0.1", "P=NaN"] {
-            assert!(wrong.parse::<ChannelDelay>().is_err(), "{wrong}");
+            assert!(channel_delay(wrong).is_err(), "{wrong}");
         }
     }
 }

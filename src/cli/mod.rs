@@ -2,23 +2,17 @@
 //!
 //! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong; the reason on standard error.
 
-mod analyze;
 mod arguments;
 mod check;
-mod destination;
-mod export;
-mod failure;
-mod figure;
-mod history_records;
 mod identify;
 mod identify_arguments;
 mod models;
-mod read_record;
+mod records;
 mod requirements;
+mod results;
 mod study_options;
 mod summary;
 mod terminal;
-mod text_table;
 
 use std::error::Error;
 use std::ffi::OsString;
@@ -34,39 +28,15 @@ use gdcm_files::variables::ReadingBudget;
 use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
 
 use crate::executor::start_threads;
-use arguments::{Arguments, real_number, whole_number};
-use destination::{Destination, Group, said_conditions};
-use failure::{Failure, listed_paths};
-use history_records::{entry_of_dataset, time_histories};
-use models::{ReadingProgress, counted};
-use read_record::{ReadRecords, found_records, hold_out, is_called, laid_out, record_table};
-use study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of, turn};
-use summary::{LABEL, doubt_words, leave_one_out_section};
-use terminal::{Manner, TerminalProgress, caution, caution_of, error, keep_caution, note, progress_target, say};
-use text_table::{by_words, indented, labelled, listed, listed_conditions};
+use arguments::{Arguments, Command, OpeningArguments};
+use terminal::{Failure, Manner, WRONG_INPUT, caution, error, say};
 
-pub use arguments::{
-    AnalyzeArguments, AssembleArguments, Command, ConvertArguments, FigureArguments, OpeningArguments, PairChoice,
-    PairList, Rejection, ReportArguments, RequirementsArguments, SaidSign, StudyArguments,
-};
-pub use export::{Breakpoints, ExportArguments};
-pub use history_records::HistoryArguments;
-pub use identify_arguments::{
-    ChannelConversion, ChannelDelay, ChannelTopic, IdentifyArguments, OfferedChoice, RecordPart, of_one_record,
-};
-use identify_arguments::{said_unit, say_conversions};
-
-/// What the command line asks for.
-#[derive(Debug)]
-pub enum Request {
-    /// The window, on a file or on the embedded example.
-    Window(Option<PathBuf>),
-    /// A command without a window.
-    Command(Box<Command>),
-}
-
-/// Reads a command line; help, version and errors are printed here, and leave only the exit status.
-pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, ExitCode> {
+/// Carries out a command line. Without a command it opens a window, on a file or on the embedded example; help, version and errors are
+/// printed here.
+pub fn run(
+    arguments: impl IntoIterator<Item = OsString>,
+    open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
+) -> ExitCode {
     let arguments = joined(arguments);
     // A command line that is not understood is told of in the manner that it asks for.
     let asks = |option: &str| arguments.iter().any(|argument| argument == option);
@@ -74,14 +44,14 @@ pub fn request(arguments: impl IntoIterator<Item = OsString>) -> Result<Request,
     match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command: Some(command), quiet, json, .. }) => {
             terminal::speak(Manner { quiet, json });
-            Ok(Request::Command(Box::new(command)))
+            finish(start_threads().map_err(|reason| Failure::NoThreads { reason }).and_then(|()| carry_out(&command)))
         }
-        Ok(Arguments { command: None, file, .. }) => Ok(Request::Window(file)),
+        Ok(Arguments { command: None, file, .. }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
             error(&usage_words(&wrong));
-            Err(ExitCode::from(terminal::end(failure::WRONG_INPUT)))
+            ExitCode::from(terminal::end(WRONG_INPUT))
         }
-        Err(help) => Err(finish(say(&help.to_string()))),
+        Err(help) => finish(say(&help.to_string())),
     }
 }
 
@@ -105,21 +75,19 @@ fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     joined
 }
 
-/// Carries out a command.
-pub fn run(command: &Command) -> ExitCode {
-    let carry_out = || match command {
-        Command::Analyze(arguments) => analyze::analyze(arguments),
-        Command::Figure(arguments) => figure::figure(arguments),
-        Command::Report(arguments) => analyze::report(arguments),
+fn carry_out(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::Analyze(arguments) => results::analyze(arguments),
+        Command::Figure(arguments) => results::figure(arguments),
+        Command::Report(arguments) => results::report(arguments),
         Command::Requirements(arguments) => requirements::requirements(arguments),
-        Command::Export(arguments) => export::export(arguments),
+        Command::Export(arguments) => results::export(arguments),
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
         Command::Check { file, opening, sign } => check::check(file, opening, sign),
         Command::Example { directory, force } => example(directory, existing(*force)),
-    };
-    finish(start_threads().map_err(|reason| Failure::NoThreads { reason }).and_then(|()| carry_out()))
+    }
 }
 
 /// Opens a dataset or a study; what is different in a study's dataset is told on standard error, a line each.

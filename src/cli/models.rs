@@ -1,12 +1,12 @@
 //! `gdcm assemble` and `gdcm convert`: models out of files of whatever format.
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use gdcm_core::assembly::{Assembly, Headings, proposed_rules};
+use gdcm_core::assembly::{Assembly, Headings, Rules, proposed_rules};
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::Table;
 use gdcm_core::units::number;
 use gdcm_files::{
@@ -14,14 +14,13 @@ use gdcm_files::{
     relative_folder, rules_path, sources_folder,
 };
 
-use super::arguments::FileSign;
-use super::{
-    AssembleArguments, ConvertArguments, Failure, caution, error, existing, indented, note, progress_target, say,
-};
+use super::arguments::{AssembleArguments, ConvertArguments, FileSign};
+use super::existing;
+use super::terminal::{Failure, caution, error, indented, note, progress_target, say};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
-    bar: RefCell<ProgressBar>,
+    bar: ProgressBar,
 }
 
 impl ReadingProgress {
@@ -30,22 +29,21 @@ impl ReadingProgress {
         if let Ok(style) = ProgressStyle::with_template("reading {pos} of {len}: {msg}") {
             bar.set_style(style);
         }
-        Self { bar: RefCell::new(bar) }
+        Self { bar }
     }
 }
 
 impl FolderProgress for ReadingProgress {
     fn reading(&self, number: usize, of: usize, name: &str) {
-        let bar = self.bar.borrow();
-        bar.set_length(of as u64);
-        bar.set_position(number as u64);
-        bar.set_message(sanitized(name));
+        self.bar.set_length(of as u64);
+        self.bar.set_position(number as u64);
+        self.bar.set_message(sanitized(name));
     }
 }
 
 impl Drop for ReadingProgress {
     fn drop(&mut self) {
-        self.bar.borrow().finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
@@ -77,14 +75,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut places: Vec<&Path> = vec![&arguments.out];
     places.extend(is_proposed.then_some(rules_path.as_path()));
     outputs.check(&places)?;
-    let said = match &arguments.rules {
-        Some(path) => {
-            let (rules, cautions) = load_rules(path)?;
-            cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
-            Some(rules)
-        }
-        None => None,
-    };
+    let said = arguments.rules.as_deref().map(said_rules).transpose()?;
     let mut headings = said.as_ref().map(|rules| rules.headings.clone()).unwrap_or_default();
     headings.extend(said_headings(&arguments.headings));
     let found = found_models(&arguments.folders, &headings)?;
@@ -129,15 +120,18 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
 }
 
+/// The rules of a file; what is to be known of them is told on standard error.
+fn said_rules(path: &Path) -> Result<Rules, Failure> {
+    let (rules, cautions) = load_rules(path)?;
+    cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
+    Ok(rules)
+}
+
 /// Refuses what is said twice of the sign of one channel of the same models.
 fn check_signs(signs: &[FileSign]) -> Result<(), Failure> {
-    let is_again =
-        |at: &usize| signs[..*at].iter().any(|of| of.channel == signs[*at].channel && of.of == signs[*at].of);
-    match (0..signs.len()).find(is_again) {
-        Some(again) => {
-            let FileSign { channel, of, .. } = &signs[again];
-            Err(Failure::Option { option: "--sign", reason: format!("{channel} of {of} stands twice") })
-        }
+    let mut seen = BTreeSet::new();
+    match signs.iter().find(|sign| !seen.insert((&sign.channel, &sign.of))) {
+        Some(FileSign { channel, of, .. }) => Err(Failure::option("--sign", format!("{channel} of {of} stands twice"))),
         None => Ok(()),
     }
 }
@@ -152,8 +146,8 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
 
 /// What is said of every table of as many columns.
 fn said_headings(headings: &[String]) -> Headings {
-    let said = Some(headings.iter().map(|heading| heading.trim().to_owned()).collect::<Vec<_>>());
-    said.filter(|said| !said.is_empty()).map(|said| (EVERY_TABLE.to_owned(), said)).into_iter().collect()
+    let said: Vec<String> = headings.iter().map(|heading| heading.trim().to_owned()).collect();
+    if said.is_empty() { Headings::new() } else { Headings::from([(EVERY_TABLE.to_owned(), said)]) }
 }
 
 fn name_of(folders: &[PathBuf]) -> String {

@@ -1,21 +1,21 @@
 //! `gdcm requirements`: what a qualification asks of the models of every condition, written as files, with a short table.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::requirements::{ModeVerdict, ToleranceTable};
+use gdcm_core::requirements::ModeVerdict;
 use gdcm_core::study::{
     Analysis, BandwidthFinding, KnownPoles, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table,
     TimeHistories,
 };
 use gdcm_core::units::s_to_ms;
-use gdcm_files::{OutputSet, REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
+use gdcm_files::{REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
 
-use super::{
-    Failure, LABEL, RequirementsArguments, TerminalProgress, analysis_of, by_words, caution_of, counted, indented,
-    labelled, listed_conditions, note, say, study_of, time_histories,
-};
+use super::arguments::RequirementsArguments;
+use super::models::counted;
+use super::records::time_histories;
+use super::study_options::{analysis_of, study_of};
+use super::terminal::{Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say};
 
 /// Writes the table of tolerances where that is asked for; analyses, writes the requirements, and prints a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
@@ -23,7 +23,12 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
     let mut outputs = outputs.also_reading(histories.records.iter().cloned());
     let written = match &arguments.write_tolerances {
-        Some(path) => add_tolerances_to(&study.requirements.tolerances, path, &mut outputs)?,
+        Some(path) => {
+            let tolerances = &study.requirements.tolerances;
+            add_tolerances(tolerances, path, &mut outputs)?;
+            let rows = counted(tolerances.rows().len(), "row");
+            line("Tolerances", &format!("{rows} in {}", sanitized_path(path)))
+        }
         None => String::new(),
     };
     let Some(out) = &arguments.out else {
@@ -45,37 +50,25 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
         + &summary_section(&requirements)
         + &mode_section(&requirements)
         + &history_section(&histories)
-        + &labelled(0, "", LABEL, "these numbers are no qualification")
-        + &labelled(0, "Written", LABEL, &files);
+        + &line("", "these numbers are no qualification")
+        + &line("Written", &files);
     say(&(text + &written))?;
     records.ended()
 }
 
-/// Adds the table of tolerances to what is written, and gives the line that says so.
-fn add_tolerances_to(tolerances: &ToleranceTable, path: &Path, outputs: &mut OutputSet) -> Result<String, Failure> {
-    add_tolerances(tolerances, path, outputs)?;
-    Ok(labelled(
-        0,
-        "Tolerances",
-        LABEL,
-        &format!("{} in {}", counted(tolerances.rows().len(), "row"), sanitized_path(path)),
-    ))
-}
-
 /// What has to be known, and what is missing; that there are no records at all is no surprise to who gave none.
 fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
-    for caution in by_words(requirements.cautions.iter().map(|of| (of.condition, of.text.clone()))) {
-        caution_of(&caution.0, &caution.1);
+    for (conditions, words) in by_words(requirements.cautions.iter().map(|of| (of.condition, of.text.clone()))) {
+        caution_of(&conditions, &words);
     }
     let of_records = histories.missing.iter().filter(|_| !histories.records.is_empty());
     // Conditions without a result have been told already.
     let missing = requirements.missing.iter().filter(|of| of.what != "all").chain(of_records);
-    let (of_conditions, of_all): (Vec<&MissingFinding>, Vec<_>) = missing.partition(|of| of.condition.is_some());
-    of_all.iter().for_each(|of| note(&format!("no {}: {}", of.what, of.why)));
-    let of_conditions =
-        of_conditions.iter().filter_map(|of| Some((of.condition?, format!("no {}: {}", of.what, of.why))));
-    for (conditions, words) in by_words(of_conditions) {
-        note(&format!("{}: {words}", listed_conditions(&conditions)));
+    let mut missing: Vec<&MissingFinding> = missing.collect();
+    missing.sort_by_key(|of| of.condition.is_some());
+    for (conditions, words) in by_words(missing.iter().map(|of| (of.condition, format!("no {}: {}", of.what, of.why))))
+    {
+        note(&of_conditions(&conditions, &words));
     }
 }
 
@@ -106,17 +99,16 @@ fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String
     let table = bandwidth_table(known.map(|of| (name(of), of)));
     let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
     let star = if is_marked { "; * rests on the response above the band" } else { "" };
-    let mut text = labelled(0, "Bandwidth", LABEL, &format!("of the attitude [rad/s] / phase delay [ms]{star}:"));
+    let mut text = line("Bandwidth", &format!("of the attitude [rad/s] / phase delay [ms]{star}:"));
     if !table.rows.is_empty() {
-        text.push_str(&indented(&table, 2));
+        text += &indented(&table, 2);
     }
     for (label, quantity) in [("No bandwidth", "omega_bw_rad_s"), ("No delay", "phase_delay_s")] {
         let absent = responses().flat_map(|of| absent_words(&name(of), of, quantity));
         // Of a response without any number, one reason does for both.
         let absent = absent.filter(|(of, _)| quantity == "omega_bw_rad_s" || has_number(of));
         for (conditions, words) in by_words(absent.map(|(of, words)| (of.condition, words))) {
-            let words = format!("{}: {words}", listed_conditions(&conditions));
-            text.push_str(&labelled(0, label, LABEL, &sanitized(&words)));
+            text += &line(label, &sanitized(&of_conditions(&conditions, &words)));
         }
     }
     text
@@ -166,29 +158,28 @@ fn summary_section(requirements: &Requirements) -> String {
         cells.extend(roles.map(|role| cell(value(role, |of| of.muad_share_on_axis.map(|share| 100.0 * share)), 0)));
         table.row(cells);
     }
-    labelled(0, "Summary", LABEL, "on-axis mean of J, and of the share of the band inside the MUAD envelopes:")
-        + &indented(&table, 2)
+    line("Summary", "on-axis mean of J, and of the share of the band inside the MUAD envelopes:") + &indented(&table, 2)
 }
 
 /// How many modes of the physics models, and of the corrected ones where couplings move them, are within their tolerances.
 fn mode_section(requirements: &Requirements) -> String {
     let counted = |model: &str, verdicts: &[ModeVerdict]| {
         let count = |verdict: ModeVerdict| verdicts.iter().filter(|of| **of == verdict).count();
-        format!(
-            "of {model} against identified: {} within the tolerance, {} outside, {} not determined by flight, {} without a tolerance, \
-             {} without a counterpart",
-            count(ModeVerdict::Within),
-            count(ModeVerdict::Outside),
-            count(ModeVerdict::NotDetermined),
-            count(ModeVerdict::NoTolerance),
-            count(ModeVerdict::NotPaired)
-        )
+        let counts = [
+            (ModeVerdict::Within, "within the tolerance"),
+            (ModeVerdict::Outside, "outside"),
+            (ModeVerdict::NotDetermined, "not determined by flight"),
+            (ModeVerdict::NoTolerance, "without a tolerance"),
+            (ModeVerdict::NotPaired, "without a counterpart"),
+        ];
+        let counts = counts.map(|(verdict, words)| format!("{} {words}", count(verdict)));
+        format!("of {model} against identified: {}", counts.join(", "))
     };
     let physics: Vec<ModeVerdict> = requirements.modes.iter().map(|mode| mode.verdict).collect();
     let corrected: Vec<ModeVerdict> = requirements.modes.iter().filter_map(|mode| mode.corrected_verdict).collect();
-    let mut text = labelled(0, "Modes", LABEL, &counted("physics", &physics));
+    let mut text = line("Modes", &counted("physics", &physics));
     if !corrected.is_empty() {
-        text.push_str(&labelled(0, "", LABEL, &counted("corrected with its couplings", &corrected)));
+        text += &line("", &counted("corrected with its couplings", &corrected));
     }
     text
 }
@@ -198,7 +189,7 @@ fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
         let why = histories.missing.first().map_or("no record was compared", |of| of.why.as_str());
-        return labelled(0, HEADING, LABEL, &sanitized(why));
+        return line(HEADING, &sanitized(why));
     }
     let mut table = histories.share_table();
     let all = table.rows.len();
@@ -213,17 +204,12 @@ fn history_section(histories: &TimeHistories) -> String {
          rows, in which every model is always inside, are left out:",
         all - table.rows.len()
     );
-    let costs = histories.cost_table();
-    labelled(0, HEADING, LABEL, &words)
+    let costs = format!(
+        "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",
+        histories.weights_words().replace('\u{b2}', "^2")
+    );
+    line(HEADING, &words)
         + &indented(&Table { title: String::new(), ..table }, 2)
-        + &labelled(
-            0,
-            "",
-            LABEL,
-            &format!(
-                "rms error J_rms and Theil's coefficients, over all records of a condition, {}:",
-                histories.weights_words().replace('\u{b2}', "^2")
-            ),
-        )
-        + &indented(&Table { title: String::new(), ..costs }, 2)
+        + &line("", &costs)
+        + &indented(&Table { title: String::new(), ..histories.cost_table() }, 2)
 }

@@ -2,25 +2,24 @@
 
 use std::sync::Arc;
 
-use crate::executor::Pool;
 use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
-use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
+use gdcm_core::study::{Analysis, Edit, Engine, RequirementSettings, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
 
-use super::open as open_file;
-use super::{
-    Failure, PairList, Rejection, SaidSign, StudyArguments, TerminalProgress, by_words, caution, caution_of, existing,
-    listed_conditions,
-};
+use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
+use super::identify_arguments::said_twice;
+use super::terminal::{Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions};
+use super::{existing, open};
+use crate::executor::Pool;
 
 /// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
 /// Cautions of the file are told on standard error.
 pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study, LoadedDataset, OutputSet), Failure> {
     let (mut study, loaded) = match &arguments.file {
         Some(file) => {
-            let (study, loaded, _) = open_file(file, &arguments.opening)?.into_study();
+            let (study, loaded, _) = open(file, &arguments.opening)?.into_study();
             (study, loaded)
         }
         None => {
@@ -63,10 +62,9 @@ pub(super) fn analysis_of(
         analysis.coupling_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
-    let failure = |(id, outcome): (&ConditionId, &Result<_, ConditionFailure>)| {
-        outcome.as_ref().err().map(|failure| (*id, failure.to_string()))
-    };
-    let failures: Vec<(ConditionId, String)> = analysis.conditions.iter().filter_map(failure).collect();
+    let failures =
+        analysis.conditions.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?.to_string())));
+    let failures: Vec<(ConditionId, String)> = failures.collect();
     if let Some((id, first)) = failures.first().filter(|_| failures.len() == analysis.conditions.len()) {
         return Err(Failure::NoResult { reason: format!("condition {id}: {first}") });
     }
@@ -79,7 +77,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
     let found = dataset.condition(ConditionId(id)).map(|condition| condition.id());
     found.ok_or_else(|| {
         let reason = format!("the dataset has no condition {id}; it has {}", ids(dataset));
-        Failure::Option { option: "--condition", reason }
+        Failure::option("--condition", reason)
     })
 }
 
@@ -89,18 +87,22 @@ pub(super) fn ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
+/// Takes a decision that an option asks for.
+fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
+    study.apply(edit).map_err(|refusal| Failure::option(option, refusal))
+}
+
 /// Puts the options into the study, over what it says itself.
 fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for (setting, words) in &arguments.settings.said {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let value = setting.read(&words).map_err(|reason| Failure::Option { option, reason: sanitized(&reason) })?;
-        study.apply(&setting.to(value)).map_err(Failure::refused(option))?;
+        let value = setting.read(&words).map_err(|reason| Failure::option(option, sanitized(&reason)))?;
+        apply(study, option, &setting.to(value))?;
     }
     turn(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
-        let edit = Edit::SetHeldOut { condition: ConditionId(id), held_out: true };
-        study.apply(&edit).map_err(Failure::refused("--hold-out"))?;
+        apply(study, "--hold-out", &Edit::SetHeldOut { condition: ConditionId(id), held_out: true })?;
     }
     require(study, arguments)?;
     check_second_variable(study)?;
@@ -117,7 +119,7 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
     for name in &arguments.attitude_command {
         if !outputs.contains(name) {
             let reason = sanitized(&format!("expected one of {}, found {name}", outputs.join(", ")));
-            return Err(Failure::Option { option: "--attitude-command", reason });
+            return Err(Failure::option("--attitude-command", reason));
         }
         settings.attitude_command.insert(name.clone());
     }
@@ -135,8 +137,7 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
         settings.tolerances = tolerances;
     }
     if settings != *study.requirements {
-        let edit = Edit::SetRequirements("options", Arc::new(settings));
-        study.apply(&edit).map_err(Failure::refused("--levels"))?;
+        apply(study, "--levels", &Edit::SetRequirements("options", Arc::new(settings)))?;
     }
     Ok(())
 }
@@ -155,33 +156,35 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
         "a schedule of airspeed and {variable} needs the {variable} [{unit}] of every scheduled condition, and the dataset does not \
          say that of {of}"
     );
-    Err(Failure::Option { option: "--second-variable", reason })
+    Err(Failure::option("--second-variable", reason))
 }
 
 /// Turns the channels whose signs an option says, or puts them back.
-pub(super) fn turn(study: &mut Study, signs: &[SaidSign]) -> Result<(), Failure> {
+pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
-    let is_again = |at: &usize| signs[..*at].iter().any(|before| before.channel == signs[*at].channel);
-    if let Some(again) = (0..signs.len()).find(is_again) {
-        let reason = sanitized(&format!("{} stands twice", signs[again].channel));
-        return Err(Failure::Option { option: OPTION, reason });
+    if let Some(channel) = said_twice(signs) {
+        return Err(Failure::option(OPTION, sanitized(&format!("{channel} stands twice"))));
     }
-    for SaidSign { channel: name, of } in signs {
+    for OfChannel { channel: name, said: of } in signs {
         let (inputs, outputs) = study.dataset.names_of_channels();
         let all = correction::Channel::all(inputs.len(), outputs.len());
         let named: Vec<correction::Channel> = all.filter(|channel| channel.name(&inputs, &outputs) == *name).collect();
         let [channel] = named[..] else {
             let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
             let reason = sanitized(&format!("expected one of {all}; {found} channels are called {name}"));
-            return Err(Failure::Option { option: OPTION, reason });
+            return Err(Failure::option(OPTION, reason));
         };
-        study.apply(&Edit::SetSign { channel, of: *of }).map_err(Failure::refused(OPTION))?;
+        apply(study, OPTION, &Edit::SetSign { channel, of: *of })?;
     }
     Ok(())
 }
 
 /// The responses of a list, which an option gave.
-pub(super) fn pairs_of(dataset: &Dataset, list: &PairList, option: &'static str) -> Result<Vec<Pair>, Failure> {
+pub(super) fn pairs_of(
+    dataset: &Dataset,
+    list: &[(String, String)],
+    option: &'static str,
+) -> Result<Vec<Pair>, Failure> {
     let find = |(output, input): &(String, String)| {
         dataset.find_pair(output, input).ok_or_else(|| {
             let reason = format!(
@@ -189,10 +192,10 @@ pub(super) fn pairs_of(dataset: &Dataset, list: &PairList, option: &'static str)
                 names(dataset.outputs()),
                 names(dataset.inputs())
             );
-            Failure::Option { option, reason }
+            Failure::option(option, reason)
         })
     };
-    list.pairs.iter().map(find).collect()
+    list.iter().map(find).collect()
 }
 
 /// The names of channels, with commas.
@@ -200,18 +203,18 @@ pub(super) fn names(channels: &[Channel]) -> String {
     channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", ")
 }
 
-fn hold(study: &mut Study, list: &PairList) -> Result<(), Failure> {
+fn hold(study: &mut Study, list: &[(String, String)]) -> Result<(), Failure> {
     let dataset = study.dataset.clone();
     let held = pairs_of(&dataset, list, "--on")?;
     for pair in dataset.on_axis().pairs() {
-        study.apply(&Edit::Hold(pair, held.contains(&pair))).map_err(Failure::refused("--on"))?;
+        apply(study, "--on", &Edit::Hold(pair, held.contains(&pair)))?;
     }
     Ok(())
 }
 
 fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     let Rejection { condition: id, model: name } = rejection;
-    let wrong = |reason: String| Failure::Option { option: "--reject", reason };
+    let wrong = |reason: String| Failure::option("--reject", reason);
     let id = ConditionId(*id);
     let condition = study.dataset.condition(id);
     let condition = condition.ok_or_else(|| wrong(format!("the dataset has no condition {id}")))?;
@@ -224,7 +227,7 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
             return Err(wrong(reason));
         }
     };
-    study.apply(&Edit::Reject(model)).map_err(Failure::refused("--reject"))
+    apply(study, "--reject", &Edit::Reject(model))
 }
 
 /// Rejects what the analysis suggests; says whether anything changed.
@@ -232,7 +235,7 @@ fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Fail
     let before = study.clone();
     for (&condition, result) in &analysis.conditions {
         let models = result.as_ref().map(|result| result.suggested()).unwrap_or_default();
-        study.apply(&Edit::reject_physics(condition, &models)).map_err(Failure::refused("--reject-suggested"))?;
+        apply(study, "--reject-suggested", &Edit::reject_physics(condition, &models))?;
     }
     Ok(*study != before)
 }

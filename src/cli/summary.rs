@@ -15,32 +15,30 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms, signed};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::{by_words, indented, keep_caution, labelled, listed, listed_conditions};
-
-/// Width of the labels at the left of a section.
-pub(super) const LABEL: usize = 14;
+use super::terminal::{by_words, detail, detail_list, indented, keep_caution, line, of_conditions};
 
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
-    let mut text = heading(analysis, loaded);
-    for doubt in &analysis.doubts {
+    let doubts = analysis.doubts.iter().map(|doubt| {
         let words = doubt_words(doubt, &analysis.study.dataset);
         keep_caution(&doubt.conditions, &words);
-        text.push_str(&labelled(0, "Caution", LABEL, &sanitized(&words)));
-    }
-    for condition in analysis.study.dataset.conditions() {
-        text.push('\n');
-        text.push_str(&condition_section(analysis, condition));
-    }
-    text.push_str(&couplings_section(analysis));
-    text.push('\n');
-    text.push_str(&cautions_section(analysis));
-    text.push_str(&schedule_section(analysis));
-    text.push_str(&assessment_lines(analysis));
-    text.push_str(&held_out_lines(analysis));
-    text.push_str(&evidence_section(analysis));
-    text.push_str(&labelled(0, "Written", LABEL, &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out))));
-    text
+        line("Caution", &sanitized(&words))
+    });
+    let doubts: String = doubts.collect();
+    let conditions =
+        analysis.study.dataset.conditions().iter().map(|of| format!("\n{}", condition_section(analysis, of)));
+    let conditions: String = conditions.collect();
+    heading(analysis, loaded)
+        + &doubts
+        + &conditions
+        + &couplings_section(analysis)
+        + "\n"
+        + &cautions_section(analysis)
+        + &schedule_section(analysis)
+        + &assessment_lines(analysis)
+        + &held_out_lines(analysis)
+        + &evidence_section(analysis)
+        + &line("Written", &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out)))
 }
 
 /// A doubt of a channel's sign or unit, with the option that turns the sign.
@@ -74,15 +72,15 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
             number(settings.lead.limit)
         ),
     };
-    let mut text = labelled(0, "Dataset", LABEL, &dataset) + &labelled(0, "Band", LABEL, &band);
+    let mut text = line("Dataset", &dataset) + &line("Band", &band);
     if settings.gain_source != GainSource::default() {
-        text.push_str(&labelled(0, "G from", LABEL, &settings.gain_source_words()));
+        text += &line("G from", &settings.gain_source_words());
     }
     for turned in study.turned_channels() {
         let words = format!("{} of {} is turned", sanitized(&turned.channel), turned.of.models());
-        text.push_str(&labelled(0, "Sign", LABEL, &words));
+        text += &line("Sign", &words);
     }
-    text + &labelled(0, "Phase", LABEL, &phase) + &labelled(0, "Held", LABEL, &held)
+    text + &line("Phase", &phase) + &line("Held", &held)
 }
 
 /// What the couplings mean, are worth and cost; nothing without couplings.
@@ -93,12 +91,12 @@ fn couplings_section(analysis: &Analysis) -> String {
     }
     let mut text = "\n".to_owned();
     if let Some(assessment) = &analysis.coupling_assessment {
-        text.push_str(&labelled(0, "Couplings", LABEL, &sanitized(&assessment.heading())));
-        text.push_str(&indented(&assessment.cost_table(), 2));
+        text += &line("Couplings", &sanitized(&assessment.heading()));
+        text += &indented(&assessment.cost_table(), 2);
         for mut table in assessment.matrix_tables(&analysis.study.dataset) {
             let names = table.rows.iter_mut().filter_map(|row| row.first_mut());
             names.chain(&mut table.columns).for_each(|name| *name = sanitized(name));
-            text.push_str(&indented(&table, 2));
+            text += &indented(&table, 2);
         }
     }
     for remark in &said {
@@ -109,44 +107,33 @@ fn couplings_section(analysis: &Analysis) -> String {
         if remark.kind != RemarkKind::Good {
             keep_caution(&[], &remark.text);
         }
-        text.push_str(&detail(label, &sanitized(&remark.text)));
+        text += &detail(label, &sanitized(&remark.text));
     }
     text
 }
 
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.
 fn assessment_lines(analysis: &Analysis) -> String {
-    let mut text = labelled(0, "Assessment", LABEL, &sanitized(&assessment_sentence(analysis)));
+    let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
     for left_out in AssessmentTable::of(analysis, usual(analysis, AssessedCorrection::Scheduled)).left_out {
         let words = format!("condition {}: {}", left_out.condition, sanitized(&left_out.why));
-        text.push_str(&labelled(0, "Left out", LABEL, &words));
+        text += &line("Left out", &words);
     }
     text
-}
-
-/// A line of a section.
-fn detail(label: &str, words: &str) -> String {
-    labelled(2, label, LABEL - 2, words)
-}
-
-/// A list in a section; says so where it is empty.
-fn detail_list(label: &str, entries: Vec<String>) -> String {
-    let entries = if entries.is_empty() { vec!["none".to_owned()] } else { entries };
-    listed(2, label, LABEL - 2, &entries)
 }
 
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
     let title = format!("{} ({} kt)", sanitized(&state.name), number(state.airspeed_kt));
-    let mut text = labelled(0, &format!("Condition {}", state.id), LABEL, &title);
+    let mut text = line(&format!("Condition {}", state.id), &title);
     match analysis.conditions.get(&condition.id()) {
         None => {}
         Some(Ok(result)) => {
-            text.push_str(&model_lines(analysis, result));
-            text.push_str(&indented(&response_table(analysis, result), 2));
-            text.push_str(&channel_lines(analysis, result));
-            text.push_str(&trouble_lines(analysis, result));
+            text += &model_lines(analysis, result);
+            text += &indented(&response_table(analysis, result), 2);
+            text += &channel_lines(analysis, result);
+            text += &trouble_lines(analysis, result);
         }
         Some(Err(failure)) => text.push_str(&detail("no result", &sanitized(&failure.to_string()))),
     }
@@ -160,10 +147,10 @@ fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let suggested = result.suggested().into_iter().filter(|name| !is_rejected(name));
     let suggested: Vec<String> = suggested.map(|name| sanitized(&name)).collect();
     let mut text = detail("physics", &sanitized(result.representative_name(BundleKind::Physics)));
-    text.push_str(&detail("identified", &sanitized(result.representative_name(BundleKind::Identified))));
-    text.push_str(&detail_list("rejected", rejected));
+    text += &detail("identified", &sanitized(result.representative_name(BundleKind::Identified)));
+    text += &detail_list("rejected", &rejected);
     if !suggested.is_empty() {
-        text.push_str(&detail_list("outliers?", suggested));
+        text += &detail_list("outliers?", &suggested);
     }
     text
 }
@@ -234,7 +221,7 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
         let words = value(Some(s_to_ms(*delay)), 1);
         (words != "0.0").then(|| format!("{name} {words} ms"))
     });
-    detail_list("gains", gains) + &detail_list("delays", delays.collect())
+    detail_list("gains", &gains) + &detail_list("delays", &delays.collect::<Vec<_>>())
 }
 
 /// Gain, delay or lead of each channel, and the servos that its filter stands for: as if the one were replaced by the other (M15).
@@ -281,8 +268,7 @@ fn cautions_section(analysis: &Analysis) -> String {
     };
     by_words(others).into_iter().fold(text, |text, (conditions, words)| {
         keep_caution(&conditions, &words);
-        let words = format!("{}: {words}", listed_conditions(&conditions));
-        text + &labelled(0, "Caution", LABEL, &sanitized(&words))
+        text + &line("Caution", &sanitized(&of_conditions(&conditions, &words)))
     })
 }
 
@@ -322,7 +308,7 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> S
     let conditions: Vec<ConditionId> = rows.iter().map(|(id, _)| *id).collect();
     let sentence = sentences.join("; ");
     keep_caution(&conditions, &sentence);
-    labelled(0, "Cautions", LABEL, &format!("{sentence}:")) + &indented(&table, 2)
+    line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
 }
 
 /// What a repeated remark has for a column.
@@ -356,20 +342,15 @@ const REPEATED: [(&str, &str, CellOf); 3] = [
 
 /// What could not be matched and why, entry by entry, and what is not proven.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
-    let line = |label: &str, words: &str| detail(label, &sanitized(words));
     let said = remarks(&analysis.study, result, None);
-    let (mut text, mut trouble) = (String::new(), "not matched");
-    // What is said of signs and units stands above all conditions.
-    for remark in said.iter().skip(result.doubts.len()) {
-        match remark.kind {
-            // Cautions of all conditions stand together.
-            RemarkKind::Good | RemarkKind::Caution => {}
-            // What is missed comes first, then the reasons and the ways out.
-            RemarkKind::Trouble => text.push_str(&line(std::mem::replace(&mut trouble, "why"), &remark.text)),
-        }
-    }
+    // What is said of signs and units stands above all conditions; cautions of all conditions stand together.
+    let troubles = said.iter().skip(result.doubts.len()).filter(|remark| remark.kind == RemarkKind::Trouble);
+    // What is missed comes first, then the reasons and the ways out.
+    let labels = std::iter::once("not matched").chain(std::iter::repeat("why"));
+    let lines = labels.zip(troubles).map(|(label, remark)| detail(label, &sanitized(&remark.text)));
+    let mut text: String = lines.collect();
     if matches!(result.gains.proof.outcome, Outcome::NotProven { .. }) {
-        text.push_str(&line("not proven", &result.gains.proof.outcome.words()));
+        text += &detail("not proven", &sanitized(&result.gains.proof.outcome.words()));
     }
     text
 }
@@ -378,7 +359,7 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
 fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
         Ok(schedule) => schedule,
-        Err(error) => return labelled(0, "Schedule", LABEL, &error.to_string()),
+        Err(error) => return line("Schedule", &error.to_string()),
     };
     let of = match schedule.settings.quantity {
         ScheduledQuantity::LnGain => "ln k",
@@ -397,17 +378,17 @@ fn schedule_section(analysis: &Analysis) -> String {
             term.variable.unit()
         )
     });
-    let mut text = labelled(0, "Schedule", LABEL, &format!("{kind}, {range}{second}; net gains:"));
+    let mut text = line("Schedule", &format!("{kind}, {range}{second}; net gains:"));
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     for caution in &schedule.cautions {
-        text.push_str(&detail("caution", &sanitized(&caution.words(&inputs, &outputs))));
+        text += &detail("caution", &sanitized(&caution.words(&inputs, &outputs)));
     }
-    text.push_str(&schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3)));
+    text += &schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3));
     if schedule.has_delays() {
-        text.push_str(&labelled(0, "", LABEL, "net delays in ms:"));
-        text.push_str(&schedule_table(analysis, schedule, |correction, pair| {
+        text += &line("", "net delays in ms:");
+        text += &schedule_table(analysis, schedule, |correction, pair| {
             value(Some(s_to_ms(correction.net_delay_s(pair))), 1)
-        }));
+        });
     }
     text
 }
@@ -437,32 +418,28 @@ fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else { return String::new() };
     let pair_name = |pair| sanitized(&analysis.study.dataset.pair_name(pair));
     let level = 100.0 * uncertainty.level;
-    let mut text = labelled(
-        0,
-        "Scatter",
-        LABEL,
-        "of the on-axis net gains, and what trim and identification uncertainty explain of it:",
-    );
+    let mut text =
+        line("Scatter", "of the on-axis net gains, and what trim and identification uncertainty explain of it:");
     let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
-    text.push_str(&indented(&table, 2));
+    text += &indented(&table, 2);
     let significant = uncertainty.differences.iter().filter(|difference| difference.is_significant(uncertainty.level));
     let words =
         format!("{} (error bars of {level:.0} %, Holm)", uncertainty.differences_in_words().trim_end_matches('.'));
-    text.push_str(&labelled(0, "Differences", LABEL, &words));
+    text += &line("Differences", &words);
     for difference in significant {
         let words = format!("{}: {}", pair_name(difference.pair), difference.words(uncertainty.level));
-        text.push_str(&labelled(2, "", LABEL - 2, &words));
+        text += &detail("", &words);
     }
     if let Some(variable) = analysis.study.settings.schedule.second {
         let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
         if !tests.clone().any(|test| test.needed) {
             let words =
                 format!("the schedule is one of airspeed and {variable}, though no response is found to need it");
-            text.push_str(&labelled(0, "Caution", LABEL, &words));
+            text += &line("Caution", &words);
         }
     }
     for test in uncertainty.second_variables.iter().filter(|test| test.needed) {
-        text.push_str(&labelled(0, "Schedule", LABEL, &format!("{}: {}", pair_name(test.pair), test)));
+        text += &line("Schedule", &format!("{}: {}", pair_name(test.pair), test));
     }
     text
 }
@@ -470,7 +447,7 @@ fn evidence_section(analysis: &Analysis) -> String {
 /// How the schedule fares on the conditions that are held out.
 fn held_out_lines(analysis: &Analysis) -> String {
     let verdict = held_out_verdict(analysis, usual(analysis, AssessedCorrection::Scheduled));
-    verdict.map_or_else(String::new, |words| labelled(0, "Held out", LABEL, &words))
+    verdict.map_or_else(String::new, |words| line("Held out", &words))
 }
 
 /// The change of J of each condition's nominal model under the schedule of the others.
@@ -478,8 +455,7 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let [seen, unseen] = [AssessedCorrection::Scheduled, AssessedCorrection::ScheduleOfOthers]
         .map(|correction| AssessmentTable::of(analysis, usual(analysis, correction)));
     let measuring: Vec<_> = analysis.study.dataset.measuring_pairs().marked().collect();
-    let text =
-        labelled(0, "Left out", LABEL, "change of J of each condition under the schedule of the others, on-axis mean:");
+    let text = line("Left out", "change of J of each condition under the schedule of the others, on-axis mean:");
     let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
     for condition in &unseen.conditions {
         let id = condition.condition;
@@ -493,16 +469,11 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     }
     let mut text = text + &indented(&table, 2);
     for left_out in &unseen.left_out {
-        text.push_str(&labelled(
-            2,
-            "",
-            LABEL - 2,
-            &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)),
-        ));
+        text += &detail("", &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)));
     }
     if analysis.fitted_couplings().is_some() {
         let words = "the couplings here are those of all conditions; J with couplings found without each stands under Couplings";
-        text.push_str(&labelled(2, "", LABEL - 2, words));
+        text += &detail("", words);
     }
     text
 }

@@ -1,6 +1,8 @@
-//! What a command says: results on standard output, notes, cautions and errors on standard error, or all of it as one JSON object.
+//! What a command says: results on standard output, notes, cautions and errors on standard error, or all of it as one JSON object; why
+//! it was not carried out, with the exit status that says so; tables and words behind labels.
 
 use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -8,11 +10,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::message_text::{sanitized, shortened_message};
-use gdcm_core::study::Progress;
-use gdcm_files::{system_words, write_pretty};
-
-use super::{Failure, listed_conditions};
+use gdcm_core::message_text::{sanitized, sanitized_path, shortened, shortened_message};
+use gdcm_core::study::{Cancelled, Progress, Table};
+use gdcm_files::{FileError, system_words, write_pretty};
 
 /// How a command says what it says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -113,8 +113,7 @@ pub(super) fn caution_of(conditions: &[ConditionId], words: &str) {
     if said().manner.json {
         return keep_caution(conditions, words);
     }
-    let of = if conditions.is_empty() { String::new() } else { format!("{}: ", listed_conditions(conditions)) };
-    complain("caution", &format!("{of}{words}"));
+    complain("caution", &of_conditions(conditions, words));
 }
 
 /// Keeps a caution for the JSON object, where it stands apart; the text says it at its own place.
@@ -197,5 +196,225 @@ impl Progress for TerminalProgress {
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+    }
+}
+
+/// Exit status where the analysis could not be done.
+pub(super) const NOT_DONE: u8 = 1;
+/// Exit status where the command line or a file is wrong.
+pub(super) const WRONG_INPUT: u8 = 2;
+
+/// Why a command was not carried out.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    /// A file cannot be read or written.
+    #[error("{0}{remedy}", remedy = if matches!(.0, FileError::Exists { .. }) { "; --force overwrites" } else { "" })]
+    File(#[from] FileError),
+    /// An option's value is wrong for this dataset.
+    #[error("{option}: {reason}")]
+    Option { option: &'static str, reason: String },
+    /// The dataset of a study is not the one that it was made with.
+    #[error("{path}: {count} differences from what the study was made with, and --strict asks for none")]
+    Different { path: String, count: usize },
+    /// A dataset has several faults, which were told.
+    #[error("{path}: {count} faults; once they are mended, check the file again")]
+    Faulty { path: String, count: usize },
+    /// A file of models, where a dataset or a study is asked for.
+    #[error(
+        "{path}: this is neither a dataset nor a study; a dataset is made of model files by gdcm assemble {path} --out \
+         dataset.json.gz, or in the window by Import models"
+    )]
+    Models { path: String },
+    /// Something is still to be said before files are a dataset.
+    #[error("no dataset was made: {count} {} to complete; do so in {rules} and give it with --rules", if *count == 1 { "item" } else { "items" })]
+    Incomplete { count: usize, rules: String },
+    /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
+    #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time) and in which unit (--unit P=deg/s), or leave them out", if *of == 1 { "record" } else { "records" })]
+    Records { wrong: usize, of: usize },
+    /// Files of which nothing could be taken.
+    #[error("{paths}: no {what} that could be taken")]
+    Nothing { paths: String, what: &'static str },
+    /// Records that were asked for by name could not be read, or not all that is in them; what could was used.
+    #[error("{paths}: not read, or not all of it; what was made is without that")]
+    Unread { paths: String },
+    /// What was asked for was identified, and nothing of it is of use.
+    #[error("no input is identified in these records: the models say nothing of {inputs}")]
+    NotIdentified { inputs: String },
+    /// No thread is to be had.
+    #[error("no thread is to be had to compute with: {reason}")]
+    NoThreads { reason: String },
+    /// No model was identified.
+    #[error("no model was identified: {reason}")]
+    NoModels { reason: String },
+    /// No condition has a result.
+    #[error("the analysis has no result: {reason}")]
+    NoResult { reason: String },
+    /// The analysis was stopped.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// Standard output cannot be written.
+    #[error("standard output cannot be written: {reason}")]
+    StandardOutput { reason: String },
+}
+
+impl Failure {
+    /// Nothing could be taken of files.
+    pub(super) fn nothing_in(paths: &[PathBuf], what: &'static str) -> Self {
+        Failure::Nothing { paths: listed_paths(paths), what }
+    }
+
+    /// What an option says is refused.
+    pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
+        Failure::Option { option, reason: reason.to_string() }
+    }
+
+    /// The exit status.
+    pub(super) fn status(&self) -> u8 {
+        match self {
+            Failure::File(FileError::Unwritable { .. })
+            | Failure::NoResult { .. }
+            | Failure::NoModels { .. }
+            | Failure::Unread { .. }
+            | Failure::NotIdentified { .. }
+            | Failure::NoThreads { .. }
+            | Failure::Cancelled(_)
+            | Failure::StandardOutput { .. } => NOT_DONE,
+            Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
+            Failure::File(_)
+            | Failure::Option { .. }
+            | Failure::Different { .. }
+            | Failure::Incomplete { .. }
+            | Failure::Records { .. }
+            | Failure::Nothing { .. }
+            | Failure::Models { .. }
+            | Failure::Faulty { .. } => WRONG_INPUT,
+        }
+    }
+}
+
+/// Paths with commas.
+pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| sanitized_path(path)).collect::<Vec<_>>().join(", ")
+}
+
+/// A table as lines, each behind so many spaces; long names are cut.
+pub(super) fn indented(table: &Table, indent: usize) -> String {
+    let mut table = table.clone();
+    table.rows.iter_mut().flatten().for_each(|cell| *cell = shortened(cell));
+    table.text().lines().map(|line| format!("{:indent$}{line}\n", "")).collect()
+}
+
+/// Most columns of a page.
+const PAGE: usize = 110;
+
+/// Width of the labels at the left of a section.
+const LABEL: usize = 14;
+
+/// A line of a text: words behind a label at its left.
+pub(super) fn line(label: &str, words: &str) -> String {
+    labelled(0, label, LABEL, words)
+}
+
+/// A line of a section, which is set in.
+pub(super) fn detail(label: &str, words: &str) -> String {
+    labelled(2, label, LABEL - 2, words)
+}
+
+/// Words behind a label, broken between words into lines of at most [`PAGE`] columns that stand under one another.
+fn labelled(indent: usize, label: &str, width: usize, words: &str) -> String {
+    hanging(indent, label, width, shortened_message(words).split(' '))
+}
+
+/// A list in a section, with commas, broken between its entries; says so where it is empty.
+pub(super) fn detail_list(label: &str, entries: &[String]) -> String {
+    if entries.is_empty() {
+        return detail(label, "none");
+    }
+    let last = entries.len().saturating_sub(1);
+    let with_comma = |(index, entry): (usize, &String)| {
+        let entry = shortened_message(entry);
+        if index < last { format!("{entry},") } else { entry }
+    };
+    let entries: Vec<String> = entries.iter().enumerate().map(with_comma).collect();
+    hanging(2, label, LABEL - 2, entries.iter().map(String::as_str))
+}
+
+fn hanging<'w>(indent: usize, label: &str, width: usize, pieces: impl Iterator<Item = &'w str>) -> String {
+    let mut text = format!("{:indent$}{label:<width$}", "");
+    let start = text.chars().count();
+    let mut column = start;
+    for piece in pieces {
+        let length = piece.chars().count();
+        if column > start && column + 1 + length > PAGE {
+            text.push_str(&format!("\n{:start$}", ""));
+            column = start;
+        }
+        if column > start {
+            text.push(' ');
+            column += 1;
+        }
+        text.push_str(piece);
+        column += length;
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+/// "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three in a row or more by their ends.
+pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
+    let runs = conditions.chunk_by(|one, next| one.0.checked_add(1) == Some(next.0));
+    let words = runs.flat_map(|run| match run {
+        [first, _, .., last] => vec![format!("{first} to {last}")],
+        few => few.iter().map(ToString::to_string).collect(),
+    });
+    let several = if conditions.len() == 1 { "" } else { "s" };
+    format!("condition{several} {}", words.collect::<Vec<_>>().join(", "))
+}
+
+/// Words with the conditions that they are about before them; none where they are about the whole.
+pub(super) fn of_conditions(conditions: &[ConditionId], words: &str) -> String {
+    if conditions.is_empty() { words.to_owned() } else { format!("{}: {words}", listed_conditions(conditions)) }
+}
+
+/// Words about conditions, each once with all conditions that it is said of, in the order in which they were said first.
+pub(super) fn by_words<C: Into<Option<ConditionId>>>(
+    said: impl IntoIterator<Item = (C, String)>,
+) -> Vec<(Vec<ConditionId>, String)> {
+    let mut grouped: Vec<(Vec<ConditionId>, String)> = Vec::new();
+    for (condition, words) in said {
+        let place = grouped.iter().position(|(_, known)| *known == words).unwrap_or(grouped.len());
+        if place == grouped.len() {
+            grouped.push((Vec::new(), words));
+        }
+        let conditions = &mut grouped[place].0;
+        conditions.extend(condition.into().filter(|condition| !conditions.contains(condition)));
+    }
+    grouped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_words_of_many_conditions_are_said_once_with_the_conditions_named() {
+        let said = [(3, "late"), (4, "noisy"), (7, "late"), (7, "late")];
+        let said = by_words(said.map(|(id, words)| (ConditionId(id), words.to_owned())));
+        let lines: Vec<String> = said.iter().map(|(of, words)| format!("{}: {words}", listed_conditions(of))).collect();
+        assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
+        let listed = |ids: &[i64]| listed_conditions(&ids.iter().copied().map(ConditionId).collect::<Vec<_>>());
+        assert_eq!(listed(&[1, 2, 4, 5, 6, 9]), "conditions 1, 2, 4 to 6, 9");
+        assert_eq!(listed(&[i64::MAX, i64::MIN, 3]), format!("conditions {}, {}, 3", i64::MAX, i64::MIN));
+    }
+
+    #[test]
+    fn long_words_hang_under_their_start() {
+        let text = labelled(2, "rejected", 10, &"model ".repeat(40));
+        assert!(text.lines().all(|line| line.chars().count() <= PAGE));
+        assert!(
+            text.lines().skip(1).all(|line| line.starts_with(&" ".repeat(12)) && line.chars().nth(12) == Some('m'))
+        );
+        assert_eq!(text.matches("model").count(), 40);
     }
 }

@@ -11,8 +11,8 @@ use gdcm_core::units::number;
 use super::palette::{TITLE_SIZE, medium};
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{
-    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch, painted_text,
-    region_ui, response_card, result_panel, settings_panel, take_escape,
+    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch,
+    painted_text, region_ui, result_panel, settings_panel, take_escape,
 };
 
 /// Space around everything \[pt\].
@@ -52,11 +52,11 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         let is_folded = window < LEAST_WITH_RESULT;
         region_ui(ui, Region::Result, |ui| result_panel::result_ui(ui, state, is_folded, palette, commands));
         ui.add_space(8.0);
-        let card = if window >= LEAST_WITH_CARD { response_card::HEIGHT + 12.0 } else { 0.0 };
+        let card = if window >= LEAST_WITH_CARD { matrix_panel::CARD_HEIGHT + 12.0 } else { 0.0 };
         matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
         if card > 0.0 {
             ui.add_space(12.0);
-            response_card::card_ui(ui, state, palette);
+            matrix_panel::card_ui(ui, state, palette);
         }
     });
 }
@@ -199,17 +199,13 @@ fn line_ui(
 fn primary_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
     let label = RichText::new(&step.label).font(medium(BODY_SIZE)).color(palette.on_accent());
     let button = ui.add(Button::new(label).fill(palette.accent).min_size(vec2(0.0, 28.0)));
-    if named(button, Role::Button, step.label.as_str()).clicked() {
-        commands.push(step.command.clone());
-    }
+    named(button, Role::Button, step.label.as_str()).asks(step.command.clone(), commands);
 }
 
 fn link_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
     let label = RichText::new(&step.label).color(palette.accent);
     let button = ui.add(Button::new(label).frame(false).min_size(vec2(0.0, 28.0)));
-    if named(button, Role::Button, step.label.as_str()).clicked() {
-        commands.push(step.command.clone());
-    }
+    named(button, Role::Button, step.label.as_str()).asks(step.command.clone(), commands);
 }
 
 /// The settings in one line; a click opens them in place, over matrix and card.

@@ -12,8 +12,8 @@ use super::controls::elided;
 use super::palette::medium;
 use super::records::RecordsState;
 use super::{
-    BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State, bar_words,
-    button_ui, named, painted_text,
+    Asks, BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State,
+    bar_words, button_ui, named, painted_text,
 };
 
 /// Menus, the last step, the state of the document, and the way to every command.
@@ -24,9 +24,9 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
         let shown = MenuBar::new().ui(ui, |ui| {
             ui.label(RichText::new("gdcm").font(medium(BODY_SIZE)));
             ui.add_space(4.0);
-            if ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands)).response.clicked() {
-                commands.push(Command::LookForRecent);
-            }
+            ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands))
+                .response
+                .asks(Command::LookForRecent, commands);
             ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
             ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
             ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
@@ -57,9 +57,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     let keys = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
     let keys = ui.ctx().format_shortcut(&keys);
     painted_text(ui, inner, -0.01, &keys, FontId::proportional(SMALL_SIZE), palette.dim_text);
-    if named(response, Role::Button, "Find a command").clicked() {
-        commands.push(Command::ShowForm(Some(FormKind::Palette)));
-    }
+    named(response, Role::Button, "Find a command").asks(Command::ShowForm(Some(FormKind::Palette)), commands);
     rect.left()
 }
 
@@ -134,9 +132,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         false => ("Change to the dark theme", ThemePreference::Dark),
     };
     let button = named(ui.add(Button::new("◐").frame(false)), Role::Button, name);
-    if button.on_hover_text(name).clicked() {
-        commands.push(Command::SetTheme(other));
-    }
+    button.on_hover_text(name).asks(Command::SetTheme(other), commands);
 }
 
 /// Dataset and study, in the middle of the bar where there is room for that.
@@ -302,7 +298,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     let is_stopped = state.results.background.stopped;
     let is_told = state.results.is_background_told(now);
     let beside = match (&state.records.reading, is_stopped) {
-        (Some(reading), _) => Some(format!("reading {} …", reading.name)),
+        (Some(reading), _) => Some(format!("reading {reading} …")),
         (None, true) => Some("the rest was stopped".to_owned()),
         (None, false) => is_told.then(|| background_words(&state.results.background, &state.records)),
     };

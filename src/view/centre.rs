@@ -10,7 +10,7 @@ use super::answer_panel::chevron;
 use super::palette::{TITLE_SIZE, medium};
 use super::start_page::example_line_ui;
 use super::{
-    BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui, named,
+    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui, named,
     named_switch, region_ui, restore_panel_size,
 };
 
@@ -66,9 +66,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         let view = state.display.arrangement.view();
         figure_button_ui(ui, state, view, commands);
         let fit = named(ui.add(Button::new("Fit").frame(false)), Role::Button, "Fit");
-        if fit.on_hover_text("Bring every curve into view (F, or double click)").clicked() {
-            commands.push(Command::FitPlots);
-        }
+        fit.on_hover_text("Bring every curve into view (F, or double click)").asks(Command::FitPlots, commands);
         beside_ui(ui, state, palette, commands);
     });
 }
@@ -95,9 +93,7 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, group.name(), font.clone(), color);
         let response = named_switch(response, Role::Button, is_front, format!("Views: {}", group.name()));
         let names: Vec<&str> = group.views().map(View::name).collect();
-        if response.on_hover_text(names.join(", ")).clicked() {
-            commands.push(Command::ShowGroup(group));
-        }
+        response.on_hover_text(names.join(", ")).asks(Command::ShowGroup(group), commands);
     }
 }
 
@@ -138,9 +134,7 @@ fn tab_ui(ui: &mut Ui, bar: Rect, view: View, is_front: bool, palette: &Palette,
         ui.painter().rect_filled(line, 1.0, if is_front { palette.accent } else { palette.line });
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
-    if response.on_hover_text(view.kind().purpose).clicked() {
-        commands.push(Command::ShowView(view));
-    }
+    response.on_hover_text(view.kind().purpose).asks(Command::ShowView(view), commands);
 }
 
 /// The button that shows a second view beside the one in front, or puts it away.
@@ -289,9 +283,7 @@ fn dock_head_ui(
             chevron(ui, place.center(), is_open, palette);
             let response = named_switch(response, Role::Button, is_open, "Dock");
             let hint = if is_open { "Fold the plots below" } else { "Unfold the plots below" };
-            if response.on_hover_text(hint).clicked() {
-                commands.push(Command::OpenDock(!is_open));
-            }
+            response.on_hover_text(hint).asks(Command::OpenDock(!is_open), commands);
             let others: Vec<View> = View::docked(state).collect();
             for docked in &others {
                 let is_front = *docked == view;
@@ -301,9 +293,7 @@ fn dock_head_ui(
                 } else {
                     let button = ui.add(Button::selectable(is_front, text));
                     let button = named_switch(button, Role::Tab, is_front, format!("{} in the dock", docked.name()));
-                    if button.clicked() {
-                        commands.push(Command::ShowInDock(*docked));
-                    }
+                    button.asks(Command::ShowInDock(*docked), commands);
                 }
             }
             ui.add_space(4.0);

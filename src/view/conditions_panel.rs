@@ -11,7 +11,7 @@ use gdcm_files::figure::{Classes, decimals};
 use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
 use super::palette::{HEAT_COSTS, medium};
 use super::{
-    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui, named, painted_text,
+    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui, named, painted_text,
     region_ui, row_of_height_ui, table_heading_ui, table_menu_ui,
 };
 
@@ -79,9 +79,9 @@ fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     ui.painter().rect_stroke(box_of, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
     ui.painter().vline(box_of.left() + 5.0, box_of.y_range(), Stroke::new(1.3, color));
     let response = named(response, Role::Button, "Show the left panel");
-    if response.on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)").clicked() {
-        commands.push(Command::ShowLeft(true));
-    }
+    response
+        .on_hover_text("Conditions with their map and models beside the plots (Ctrl+B)")
+        .asks(Command::ShowLeft(true), commands);
 }
 
 fn bundle_button_ui(
@@ -190,9 +190,7 @@ impl<'a> Map<'a> {
         }
         self.cells_ui(ui, row, (id, &marks), palette, commands);
         marks.paint(ui, row, palette);
-        if response.clicked() {
-            commands.push(Command::SelectCondition(id));
-        }
+        response.asks(Command::SelectCondition(id), commands);
         response.context_menu(|ui| menu_ui(ui, id, &marks, commands));
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks, palette));
     }

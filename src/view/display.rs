@@ -1,4 +1,5 @@
-//! What is shown, and how: nothing of it changes a result. What of it is kept from one day to the next.
+//! What is shown, and how: nothing of it changes a result. Which views the middle of the window shows, and where: one at a time in groups,
+//! another one beside it, and the dock below. What of it is kept from one day to the next.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_core::dataset::{ConditionId, ModelId, Pair};
 use gdcm_core::study::{AcrossRole, ExplainTarget};
-
 use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
 
 use super::cost_map::MappedCost;
@@ -16,7 +16,7 @@ use super::plot::{
 };
 use super::start_page::OpensWith;
 use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View};
-use super::{Arrangement, CurveDisplay, PlotStyle, Sheet, Sorting};
+use super::{CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
 #[derive(Debug, Default)]
@@ -207,5 +207,189 @@ impl Preferences {
         display.curves.shows_bands = self.shows_bands;
         display.curves.lists_values = !self.lists_no_values;
         display.looks = self.looks.within_limits();
+    }
+}
+
+/// What the views are about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum ViewGroup {
+    /// Responses over frequency.
+    #[default]
+    Response,
+    /// Models, and what they are identified from.
+    Models,
+    /// What changes with airspeed.
+    Schedule,
+    /// What the correction is worth.
+    Judge,
+}
+
+impl ViewGroup {
+    /// Every group, from left to right.
+    pub const ALL: [Self; 4] = [Self::Response, Self::Models, Self::Schedule, Self::Judge];
+
+    /// What its button says.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Response => "Response",
+            Self::Models => "Models",
+            Self::Schedule => "Schedule",
+            Self::Judge => "Judge",
+        }
+    }
+
+    /// Its views, from left to right.
+    pub fn views(self) -> impl Iterator<Item = View> {
+        View::ALL.into_iter().filter(move |view| view.kind().group == self)
+    }
+}
+
+/// What the middle of the window shows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Arrangement {
+    /// The group in front.
+    group: ViewGroup,
+    /// The view that each group shows, in the order of the groups.
+    of_groups: [View; 4],
+    /// The view beside it, where there is one.
+    beside: Option<View>,
+    /// The view in the dock.
+    dock: View,
+    /// Whether the dock is unfolded; by the height of the window where that was not chosen.
+    dock_open: Option<bool>,
+}
+
+impl Default for Arrangement {
+    fn default() -> Self {
+        let of_groups = [View::Bode, View::Poles, View::Channels, View::Assessment];
+        Self { group: ViewGroup::Response, of_groups, beside: None, dock: View::NetGain, dock_open: None }
+    }
+}
+
+impl Arrangement {
+    /// The group in front.
+    pub fn group(&self) -> ViewGroup {
+        self.group
+    }
+
+    /// The view in front.
+    pub fn view(&self) -> View {
+        self.of_groups[self.group as usize]
+    }
+
+    /// The view beside it.
+    pub fn beside(&self) -> Option<View> {
+        self.beside.filter(|beside| *beside != self.view())
+    }
+
+    /// The view that the dock shows; none where the view in front takes its room.
+    pub fn dock(&self) -> Option<View> {
+        let is_free = !self.view().kind().takes_dock && self.view() != self.dock && self.beside() != Some(self.dock);
+        is_free.then_some(self.dock)
+    }
+
+    /// Whether the dock is unfolded in a window that has room for it, or has not.
+    pub fn is_dock_open(&self, has_room: bool) -> bool {
+        self.dock_open.unwrap_or(has_room)
+    }
+
+    /// Folds or unfolds the dock.
+    pub fn open_dock(&mut self, is_open: bool) {
+        self.dock_open = Some(is_open);
+    }
+
+    /// Brings a group to the front, with the view that it showed last.
+    pub fn show_group(&mut self, group: ViewGroup) {
+        self.group = group;
+    }
+
+    /// Brings a view to the front; one of the dock is unfolded there, unless it is in front already.
+    pub fn show(&mut self, view: View) {
+        let group = view.kind().group;
+        self.group = group;
+        self.of_groups[group as usize] = view;
+        if self.beside == Some(view) {
+            self.beside = None;
+        }
+    }
+
+    /// Shows a view in the dock.
+    pub fn dock_view(&mut self, view: View) {
+        self.dock = view;
+        self.dock_open = Some(true);
+    }
+
+    /// Shows a view beside the one in front, or none.
+    pub fn show_beside(&mut self, view: Option<View>) {
+        self.beside = view.filter(|view| *view != self.view());
+    }
+
+    /// The view so many places further in the group in front, round about.
+    pub fn neighbour(&self, by: isize) -> View {
+        let views: Vec<View> = self.group.views().collect();
+        let here = views.iter().position(|view| *view == self.view()).unwrap_or(0);
+        views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
+    }
+
+    /// Whether a view can be seen.
+    pub fn is_shown(&self, view: View) -> bool {
+        self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
+    }
+
+    /// This arrangement, kept from another day, where every group shows a view of its own.
+    pub fn if_whole(self) -> Option<Self> {
+        let is_of_group = |group: ViewGroup| self.of_groups[group as usize].kind().group == group;
+        ViewGroup::ALL.into_iter().all(is_of_group).then_some(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_view_stands_in_one_group_and_every_group_has_views() {
+        let views: Vec<View> = ViewGroup::ALL.into_iter().flat_map(ViewGroup::views).collect();
+        assert_eq!(views.len(), View::ALL.len());
+        assert!(ViewGroup::ALL.into_iter().all(|group| group.views().count() > 1));
+    }
+
+    #[test]
+    fn a_group_remembers_its_view() {
+        let mut arrangement = Arrangement::default();
+        arrangement.show(View::Overview);
+        arrangement.show_group(ViewGroup::Judge);
+        assert_eq!(arrangement.view(), View::Assessment);
+        arrangement.show_group(ViewGroup::Response);
+        assert_eq!(arrangement.view(), View::Overview);
+        assert_eq!((arrangement.neighbour(1), arrangement.neighbour(-1)), (View::Across, View::Error));
+    }
+
+    #[test]
+    fn a_view_is_never_shown_twice() {
+        let mut arrangement = Arrangement::default();
+        assert_eq!(arrangement.dock(), Some(View::NetGain));
+        arrangement.show(View::NetGain);
+        assert_eq!(arrangement.dock(), None);
+        arrangement.show(View::Bode);
+        arrangement.show_beside(Some(View::NetGain));
+        assert_eq!((arrangement.dock(), arrangement.beside()), (None, Some(View::NetGain)));
+        arrangement.show_beside(Some(View::Poles));
+        arrangement.show(View::Poles);
+        assert_eq!(arrangement.beside(), None);
+        arrangement.show(View::Records);
+        assert_eq!(arrangement.dock(), None, "it takes the room of the dock");
+    }
+
+    #[test]
+    fn an_arrangement_is_kept_and_one_that_mixes_the_groups_up_is_not_taken() {
+        let mut arrangement = Arrangement::default();
+        arrangement.show(View::Evidence);
+        arrangement.show_beside(Some(View::Bode));
+        let text = serde_json::to_string(&arrangement).unwrap();
+        assert_eq!(serde_json::from_str::<Arrangement>(&text).unwrap().if_whole(), Some(arrangement));
+        let mixed = Arrangement { of_groups: [View::Poles; 4], ..Arrangement::default() };
+        assert_eq!(mixed.if_whole(), None);
     }
 }

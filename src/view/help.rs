@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::command_table::command_table;
-use super::{Command, Palette, Reach, Region, SMALL_SIZE, State, region_place, take_escape};
+use super::{Asks, Command, Palette, Reach, Region, SMALL_SIZE, State, region_place, take_escape};
 
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;
@@ -88,9 +88,8 @@ fn note_ui(ui: &mut Ui, number: usize, step: &Step, palette: &Palette, commands:
         if ui.button(if is_last { "End the tour" } else { "Next step" }).clicked() {
             commands.push(Command::ShowTourStep((!is_last).then_some(number + 1)));
         }
-        if ui.add_enabled(number > 0, Button::new("Previous step")).clicked() {
-            commands.push(Command::ShowTourStep(Some(number.saturating_sub(1))));
-        }
+        ui.add_enabled(number > 0, Button::new("Previous step"))
+            .asks(Command::ShowTourStep(Some(number.saturating_sub(1))), commands);
         if !is_last && ui.button("Skip the tour").clicked() {
             commands.push(Command::ShowTourStep(None));
         }

@@ -16,8 +16,8 @@ use gdcm_files::figure::compact;
 use super::answer_panel::chevron;
 use super::palette::medium;
 use super::{
-    BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui, named,
-    named_switch, painted_text, question_menu_ui, region_ui, row_text, table_heading_ui, table_menu_ui,
+    Asks, BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui,
+    named, named_switch, painted_text, question_menu_ui, region_ui, row_text, table_heading_ui, table_menu_ui,
 };
 
 /// The bundles of the condition shown, below one another in the left panel: the physics models, and the identified ones folded at
@@ -86,16 +86,14 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
             let any = rejected > 0 || !choice.identified.rejected.is_empty();
             if any {
                 let restore = ui.button("Restore all");
-                if restore.on_hover_text("Put every rejected model of this condition back").clicked() {
-                    commands.push(Edit::RestoreAll { condition }.into());
-                }
+                restore
+                    .on_hover_text("Put every rejected model of this condition back")
+                    .asks(Edit::RestoreAll { condition }, commands);
             }
             if !open.is_empty() {
                 let button = named(ui.button("Reject suggested"), Role::Button, "Reject suggested models");
                 let hint = format!("Reject every model whose discontinuity ratio exceeds {SUGGESTION_RATIO} (Ctrl+R)");
-                if button.on_hover_text(hint).clicked() {
-                    commands.push(Edit::reject_physics(condition, &open).into());
-                }
+                button.on_hover_text(hint).asks(Edit::reject_physics(condition, &open), commands);
             }
         });
     });
@@ -126,9 +124,7 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
     }
     table_menu_ui(ui, &response, TableKind::of_bundle(BundleKind::Identified), commands);
     let response = named_switch(response, Role::Button, is_open, "Identified models");
-    if response.clicked() {
-        commands.push(Command::ShowIdentified(!is_open));
-    }
+    response.asks(Command::ShowIdentified(!is_open), commands);
 }
 
 fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {

@@ -11,7 +11,8 @@ use gdcm_files::figure::decimals;
 use super::palette::medium;
 use super::views::bar_words;
 use super::{
-    BODY_SIZE, Command, Palette, QUESTION, SMALL_SIZE, Sheet, State, TableKind, named, painted_text, table_menu_ui,
+    Asks, BODY_SIZE, Command, Palette, QUESTION, SMALL_SIZE, Sheet, State, TableKind, named, painted_text,
+    table_menu_ui,
 };
 
 /// Height of a row \[pt\].
@@ -65,9 +66,10 @@ fn proof_ui(
     let place = painted_text(ui, row, -0.01, words, FontId::proportional(SMALL_SIZE), color);
     let response = ui.interact(place.expand(3.0), ui.scope_id().with("proof"), Sense::click());
     let response = named(response, Role::Button, words);
-    if response.on_hover_cursor(CursorIcon::PointingHand).on_hover_text(outcome.words()).clicked() {
-        commands.push(Command::ShowSheet(Some(Sheet::Reasons)));
-    }
+    response
+        .on_hover_cursor(CursorIcon::PointingHand)
+        .on_hover_text(outcome.words())
+        .asks(Command::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
 /// The channels of one side.
@@ -190,8 +192,6 @@ impl Side<'_> {
         let words =
             self.state.sureness().bar(scalar).map(|(bar, level)| format!("\n{}", bar_words(bar, scalar, level)));
         let hint = format!("{exact}{}\nclick: {QUESTION}", words.unwrap_or_default());
-        if response.on_hover_cursor(CursorIcon::Help).on_hover_text(hint).clicked() {
-            commands.push(Command::Explain(Some(asked)));
-        }
+        response.on_hover_cursor(CursorIcon::Help).on_hover_text(hint).asks(Command::Explain(Some(asked)), commands);
     }
 }

@@ -8,7 +8,7 @@ use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, s
 use super::answer_panel::chevron;
 use super::palette::medium;
 use super::{
-    BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text,
+    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text,
     region_ui, row_ui,
 };
 
@@ -59,9 +59,7 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
     let (row, response) = row_ui(ui, palette, false, false, "Advanced settings");
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Advanced", medium(BODY_SIZE), palette.text);
-    if named_switch(response, Role::Button, is_open, "Advanced settings").clicked() {
-        commands.push(Command::ShowAdvanced(!is_open));
-    }
+    named_switch(response, Role::Button, is_open, "Advanced settings").asks(Command::ShowAdvanced(!is_open), commands);
 }
 
 fn lines_ui(

@@ -13,7 +13,7 @@ use super::palette::{DISPLAY_SIZE, TITLE_SIZE, medium};
 use super::plot::{BodeCurve, Pane, Role as CurveRole};
 use super::records::RecordsCommand;
 use super::views::bode_curves;
-use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, State, named, painted_text};
+use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, named, painted_text};
 
 /// What the program opens with where it is given nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -97,9 +97,7 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
             }
             let text = RichText::new(way.button).size(SMALL_SIZE).color(palette.accent);
             let button = named(ui.add(Button::new(text).frame(false)), Role::Button, way.button);
-            if button.on_hover_text(way.words).clicked() {
-                commands.push(way.command);
-            }
+            button.on_hover_text(way.words).asks(way.command, commands);
         }
     });
 }
@@ -161,9 +159,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     let color = if is_primary { palette.on_accent() } else { palette.text };
     let button = Button::new(RichText::new(way.button).font(medium(BODY_SIZE)).color(color)).min_size(place.size());
     let button = if is_primary { button.fill(palette.accent) } else { button };
-    if named(ui.put(place, button), Role::Button, way.button).clicked() {
-        commands.push(way.command);
-    }
+    named(ui.put(place, button), Role::Button, way.button).asks(way.command, commands);
     ui.advance_cursor_after_rect(rect);
 }
 
@@ -243,9 +239,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
         ));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            if ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).clicked() {
-                commands.push(Command::ShowStart(false));
-            }
+            ui.add(Button::new(back).min_size(vec2(0.0, 28.0))).asks(Command::ShowStart(false), commands);
             if state.is_example {
                 let tour = Button::new(RichText::new("Guided tour, five notes").color(palette.accent)).frame(false);
                 if ui.add(tour).clicked() {

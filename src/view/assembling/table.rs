@@ -2,7 +2,7 @@
 
 use egui::{Align, Button, Color32, FontId, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::{Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text};
+use crate::view::{Asks, Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text};
 use gdcm_core::assembly::Part;
 use gdcm_core::units::number;
 
@@ -66,9 +66,9 @@ pub(super) fn table_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette,
                 ui.add(Button::new(text).frame(false))
             });
             let name = format!("Sort models by {}", column.heading);
-            if named(button.inner, Role::Button, &name).on_hover_text(&name).clicked() {
-                commands.push(AssemblingCommand::Sort(index).into());
-            }
+            named(button.inner, Role::Button, &name)
+                .on_hover_text(&name)
+                .asks(AssemblingCommand::Sort(index), commands);
         }
     });
     let order = assembly.order();
@@ -90,9 +90,7 @@ pub(super) fn table_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette,
             };
             ui.painter().rect_filled(rect, 2.0, fill);
             paint_cells(ui, rect, (part, neighbours), incomplete.contains(&index), palette);
-            if response.clicked() {
-                commands.push(AssemblingCommand::Select(index).into());
-            }
+            response.asks(AssemblingCommand::Select(index), commands);
         }
     });
 }

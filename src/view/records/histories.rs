@@ -13,8 +13,7 @@ use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
 use gdcm_core::records::{ModeSpan, Spectrogram};
 
-use super::advanced::numbers;
-use super::{ConditionRecords, Page, RecordsCommand, simulated, time_models_ui};
+use super::{ConditionRecords, Page, RecordsCommand, numbers, simulated, time_models_ui};
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;

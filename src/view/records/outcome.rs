@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::view::{Command, Palette, SMALL_SIZE};
+use crate::view::{Asks, Command, Palette, SMALL_SIZE};
 use gdcm_core::dataset::{BundleKind, ChannelRemedy, ChannelSide, Pair};
 use gdcm_core::identification::{
     ChannelPreparation, ContradictingRecord, HELD_OUT, Hold, Identification, IdentificationCaution,
@@ -26,9 +26,9 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     let with_records = state.records.conditions.values().filter(|of| of.used_rows().next().is_some()).count();
     if with_records > 1 && state.records.running.is_empty() {
         let all = format!("Identify all {with_records} conditions");
-        if ui.button(all).on_hover_text("One after the other, beside the live answer").clicked() {
-            commands.push(RecordsCommand::IdentifyAll.into());
-        }
+        ui.button(all)
+            .on_hover_text("One after the other, beside the live answer")
+            .asks(RecordsCommand::IdentifyAll, commands);
         let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
         if found > 1 {
             let hint = "In place of the identified models of these conditions; one step to undo";
@@ -183,9 +183,7 @@ type Action = (String, Command);
 fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         for (text, command) in actions {
-            if ui.small_button(text).clicked() {
-                commands.push(command);
-            }
+            ui.small_button(text).asks(command, commands);
         }
     });
 }

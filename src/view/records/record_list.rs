@@ -2,7 +2,7 @@
 
 use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
 
-use crate::view::{BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
+use crate::view::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
 use gdcm_core::dataset::{ChannelRemedy, ChannelSide, RecordKind};
 use gdcm_core::identification::Signal;
 use gdcm_core::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
@@ -117,9 +117,7 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
     });
     let shown = named_switch(shown.inner, AccessRole::Button, is_chosen, format!("Record {name}"));
     let shown = if shown_name == *name { shown } else { shown.on_hover_text(name) };
-    if shown.clicked() {
-        commands.push(RecordsCommand::Choose(index).into());
-    }
+    shown.asks(RecordsCommand::Choose(index), commands);
     ui.horizontal(|ui| {
         ui.label(cost_of(records, index).map_or(RichText::new(""), |cost| cost_text(cost, palette)));
         let of_it: Vec<String> =
@@ -147,9 +145,8 @@ fn kind_ui(ui: &mut Ui, index: usize, row: &LaidOutRecord, palette: &Palette, co
         let kinds = ComboBox::from_id_salt("kind of a record").width(90.0).selected_text(row.guess.kind.word());
         let kinds = kinds.show_ui(ui, |ui| {
             for kind in RecordKind::ALL {
-                if ui.selectable_label(kind == row.guess.kind, kind.word()).clicked() {
-                    commands.push(RecordsCommand::SetKind(index, kind).into());
-                }
+                ui.selectable_label(kind == row.guess.kind, kind.word())
+                    .asks(RecordsCommand::SetKind(index, kind), commands);
             }
         });
         named(kinds.response, AccessRole::ComboBox, "Manoeuvre of the record");

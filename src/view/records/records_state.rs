@@ -7,16 +7,19 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_core::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
 use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
-use gdcm_core::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordLayout};
+use gdcm_core::records::{
+    ChannelList, ColumnUse, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish,
+    SaidChannel,
+};
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
+use gdcm_core::units::number;
 
-use crate::view::{Palette, Sorting, State};
-
-use super::{TimeModel, WantedDataset};
+use super::TimeModel;
+use crate::view::{Palette, Sorting, State, typed_number};
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -169,10 +172,9 @@ pub struct ConditionRecords {
 impl ConditionRecords {
     /// Records of a condition of `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
-        let named = |channels: &[gdcm_core::dataset::Channel]| {
-            channels.iter().map(|channel| ChannelPreparation::named(channel.name.clone())).collect()
-        };
-        Self { rows, inputs: named(dataset.inputs()), outputs: named(dataset.outputs()), ..Self::default() }
+        let (inputs, outputs) = dataset.names_of_channels();
+        let [inputs, outputs] = [inputs, outputs].map(|of| of.into_iter().map(ChannelPreparation::named).collect());
+        Self { rows, inputs, outputs, ..Self::default() }
     }
 
     /// What was identified, where that went well.
@@ -209,6 +211,11 @@ impl ConditionRecords {
                 self.changed = true;
             }
         }
+    }
+
+    /// Shows a row, or the last where there is none of this index.
+    pub fn choose(&mut self, index: usize) {
+        self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
 
     /// The row of a record of the identification.
@@ -299,13 +306,6 @@ impl Page<'_> {
     }
 }
 
-/// How far the reading of records is.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RecordsReading {
-    /// What is being read.
-    pub name: String,
-}
-
 /// What the Records view holds. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
@@ -331,8 +331,8 @@ pub struct RecordsState {
     pub sources: Vec<PathBuf>,
     /// The dataset that is to be made of the records shown.
     pub wanted: WantedDataset,
-    /// The reading under way.
-    pub reading: Option<RecordsReading>,
+    /// What is being read.
+    pub reading: Option<String>,
     /// What could not be read, in words.
     pub faults: Vec<String>,
     /// What is being identified, and what is to be.
@@ -357,5 +357,74 @@ impl RecordsState {
         let mut jobs = self.running.clone();
         jobs.sort_by_key(|job| job.condition != shown);
         jobs
+    }
+}
+
+/// A dataset that is to be made of records, as typed.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct WantedDataset {
+    /// Inputs, as [`ChannelList`] reads them.
+    pub inputs: String,
+    /// Outputs, in the same way.
+    pub outputs: String,
+    /// Lower and upper end of the band \[rad/s\].
+    pub band: [String; 2],
+    /// Path of the dataset.
+    pub path: String,
+    /// The columns of the records, in words.
+    pub columns: Vec<String>,
+    /// Why it could not be made, in words.
+    pub problems: Vec<String>,
+}
+
+impl WantedDataset {
+    /// What is proposed for the records of a condition: the channels that the documentation of a system knows; others are to be
+    /// typed.
+    pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
+        let tables = || records.rows.iter().map(|row| row.table.as_ref());
+        let known = |inputs: bool| {
+            let of_side = |column: &&RecordColumn| match (column.side, column.meaning) {
+                (Some(side), _) => (side == ChannelSide::Input) == inputs,
+                (None, Some(meaning)) => ["LON", "LAT", "PED", "COL"].contains(&meaning) == inputs && meaning != "TARG",
+                (None, None) => false,
+            };
+            let name = |column: &RecordColumn| column.meaning.unwrap_or(&column.name).to_owned();
+            let mut names: Vec<String> = tables().flat_map(|table| &table.columns).filter(of_side).map(name).collect();
+            let mut seen = BTreeSet::new();
+            names.retain(|name| seen.insert(name.clone()));
+            names.join(", ")
+        };
+        // Topics that no channel has joined yet are records of their own, under the names of their variables.
+        let words = |table: &RecordTable, column: &RecordColumn| {
+            let topic = table.source.variable.as_ref().map_or(String::new(), |variable| format!("{variable}."));
+            let unit = column.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+            format!("{topic}{}{unit}", column.name)
+        };
+        let columns: BTreeSet<String> =
+            tables().flat_map(|table| table.columns.iter().map(move |column| words(table, column))).collect();
+        Self {
+            inputs: known(true),
+            outputs: known(false),
+            band: [band.min(), band.max()].map(number),
+            path,
+            columns: columns.into_iter().collect(),
+            problems: Vec::new(),
+        }
+    }
+
+    /// The channels and the band that are asked for.
+    ///
+    /// # Errors
+    /// In words, what is no channel or no band.
+    pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
+        let rules = |side: &str, text: &str| {
+            let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
+            Ok::<_, String>(list.channels.iter().map(SaidChannel::rule).collect())
+        };
+        let (inputs, outputs) = (rules("inputs", &self.inputs)?, rules("outputs", &self.outputs)?);
+        let end = |text: &String| typed_number(text).ok().flatten().unwrap_or(f64::NAN);
+        let band = Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;
+        let resampling = ResamplingWish { band_end: Some(band.max()), ..ResamplingWish::default() };
+        Ok((RecordChannels { inputs, outputs, resampling, ..RecordChannels::default() }, band))
     }
 }

@@ -115,7 +115,7 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         rows.map(|(index, row)| (Some(index), row.table.name.as_str(), "A flight record of this condition")).collect();
     if choices.is_empty() {
         let words = match &state.records.reading {
-            Some(reading) => format!("reading {} …", reading.name),
+            Some(reading) => format!("reading {} …", reading),
             None => "No flight record of this condition is used (view Records): a test input in its place.".to_owned(),
         };
         ui.label(palette.small(words));

@@ -11,7 +11,7 @@ use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
 use super::views::show;
 use super::*;
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 
 /// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
 #[derive(Clone, Default)]

@@ -1,7 +1,7 @@
 //! Couplings by hand: looked at before they are used, offered, used, seen and undone (M16).
 
 use gdcm::view::Sheet;
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::cost_map::{MappedCost, cost_of};
 use gdcm::view::views::offered_couplings;

@@ -3,7 +3,7 @@
 use super::plots::{drag_along, place_on_nominal};
 use super::views::show;
 use super::*;
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::figures::{figure_of, views_with_figure};
 use gdcm_files::figure::{ColumnWidth, FigureFormat};
 use gdcm_files::{csv_text, write_as};

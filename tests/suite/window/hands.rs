@@ -1,6 +1,6 @@
 //! What can be asked and taken in the plots and tables: derivations, models in the overview, tables as files.
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
 use gdcm_core::study::{ExplainTarget, derivation};

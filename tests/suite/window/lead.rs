@@ -1,6 +1,6 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm_core::study::{AssessedCorrection, PhaseCorrection, setting};
 use gdcm_core::units::signed;

@@ -42,7 +42,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 
 use gdcm::app::{GdcmApp, Setup};
 use gdcm::executor::Pool;
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{Notice, NoticeKind, State};

@@ -12,7 +12,7 @@ use dream_soft_render::{ClipRect, Color, Mesh, SoftwareRenderer, TextureId, Vert
 use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::Command as Action;
 use gdcm::view::palette::Palette;

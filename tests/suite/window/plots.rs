@@ -1,6 +1,6 @@
 //! The plots, worked with the pointer.
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 
 use super::views::show;
 use super::*;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
 use gdcm_core::dataset::{Band, RecordKind};
 use gdcm_core::response::{FrequencyGrid, PreparedModel};

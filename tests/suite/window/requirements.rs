@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::views::RequirementsPage;
 use gdcm_core::dataset::ConditionId;
 use gdcm_core::requirements::{ModeVerdict, RecordCheck, ToleranceTable};

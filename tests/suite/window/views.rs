@@ -1,11 +1,11 @@
 //! The views: what each shows, by its controls.
 
-use gdcm::view::arrangement::{Arrangement, View, ViewGroup};
 use gdcm::view::command::Command as Action;
 use gdcm::view::display::Preferences;
 use gdcm::view::views::poles;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};
+use gdcm::view::{Arrangement, View, ViewGroup};
 use gdcm_core::correction::Channel;
 use gdcm_core::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 use gdcm_files::figure::{DotShape, Mark, Panel};

@@ -1,6 +1,6 @@
 //! A long walk through the window at random: nothing panics, and what is shown is what a fresh computation gives.
 
-use gdcm::view::arrangement::View;
+use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
 use gdcm_core::study::{Engine, Unobserved, setting};

@@ -1,22 +1,26 @@
-//! The records that models are identified from, as they were read.
+//! Flight records: those that models are identified from, and those that they are compared with in time (M17.2).
 
-use gdcm_core::message_text::sanitized;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_core::dataset::{ChannelRemedy, ConditionRecord, Dataset};
-use gdcm_core::identification::CautionNote;
+use clap::Args;
+
+use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::identification::{CautionNote, Preparation};
+use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::records::{
-    LaidOutRecord, LayoutCaution, RecordChannels, RecordTable, TimeWish, leave_out_copies, median_step,
-    with_topics_joined,
+    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordTable, SaidConversion, TimeWish,
+    leave_out_copies, median_step, with_topics_joined,
 };
-use gdcm_core::study::Table;
+use gdcm_core::study::{Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of};
 use gdcm_core::units::telling;
 use gdcm_files::{FoundRecords, read_records};
 
-use super::{
-    Failure, IdentifyArguments, ReadingProgress, RecordPart, caution, entry_of_dataset, error, indented, note,
-};
+use super::arguments::OfChannel;
+use super::identify_arguments::{IdentifyArguments, RecordPart, channel_unit, record_part, say_conversions};
+use super::models::ReadingProgress;
+use super::terminal::{Failure, TerminalProgress, caution, error, indented, note};
+use crate::executor::Pool;
 
 /// The records that were read.
 pub(super) struct ReadRecords {
@@ -73,8 +77,7 @@ pub(super) fn laid_out(
     let has = |part_s| records.iter().any(|record| record.table.part_s == Some(part_s));
     if let Some(part) = arguments.part.iter().find(|part| !has(part.part_s)) {
         let [from, to] = part.part_s;
-        let reason = format!("no record has samples from {from} to {to} s on its own clock");
-        return Err(Failure::Option { option: "--part", reason });
+        return Err(Failure::option("--part", format!("no record has samples from {from} to {to} s on its own clock")));
     }
     // By the units that the channels have by now: a record before the first that says them may say none.
     let by_units = |record: LaidOutRecord| {
@@ -89,12 +92,9 @@ pub(super) fn laid_out(
     leave_out_copies(&mut records);
     let mut copies = Vec::new();
     for copy in records.iter().filter(|record| !record.used) {
-        for why in &copy.cautions {
-            let LayoutCaution::Copy { first } = why else { continue };
-            let (record, text) = (copy.table.name.clone(), format!("{}: {why}", copy.table.name));
-            caution(&text);
-            let note = CautionNote { code: "duplicate", records: vec![record], text, ..CautionNote::default() };
-            copies.push((first.clone(), note));
+        for (first, text) in tell_copies(copy) {
+            let records = vec![copy.table.name.clone()];
+            copies.push((first.clone(), CautionNote { code: "duplicate", records, text, ..CautionNote::default() }));
         }
     }
     records.retain(|record| record.used);
@@ -137,11 +137,11 @@ fn parts(tables: Vec<RecordTable>, asked: &[RecordPart]) -> Result<Vec<RecordTab
     let mut found = Vec::new();
     for RecordPart { record, part_s } in asked {
         let before = found.len();
-        let is_it = |table: &&RecordTable| record.as_ref().is_none_or(|wanted| is_called(table, wanted));
-        found.extend(tables.iter().filter(is_it).map(|table| table.part_of_time(*part_s)));
+        let of_record = tables.iter().filter(|table| record.as_ref().is_none_or(|wanted| is_called(table, wanted)));
+        found.extend(of_record.map(|table| table.part_of_time(*part_s)));
         if found.len() == before {
-            let reason = format!("\"{}\" is none of the records", record.as_deref().unwrap_or_default());
-            return Err(Failure::Option { option: "--part", reason });
+            let record = record.as_deref().unwrap_or_default();
+            return Err(Failure::option("--part", format!("\"{record}\" is none of the records")));
         }
     }
     Ok(if asked.is_empty() { tables } else { found })
@@ -168,19 +168,19 @@ pub(super) fn hold_out(wanted: &[String], records: &mut [LaidOutRecord]) -> Resu
         records.iter_mut().for_each(|record| record.guess.held_out = false);
     }
     for wanted in wanted {
-        let part = wanted.parse::<RecordPart>().ok();
+        let part = record_part(wanted).ok();
         let is_part = |table: &RecordTable| {
             part.as_ref().is_some_and(|RecordPart { record, part_s }| {
                 table.part_s == Some(*part_s) && record.as_ref().is_none_or(|record| is_called(table, record))
             })
         };
         let is_it = |record: &&mut LaidOutRecord| is_called(&record.table, wanted) || is_part(&record.table);
-        let found: Vec<&mut LaidOutRecord> = records.iter_mut().filter(is_it).collect();
-        if found.is_empty() {
+        let mut found = records.iter_mut().filter(is_it).peekable();
+        if found.peek().is_none() {
             let reason = format!("\"{wanted}\" is none of the records; give its file among them too");
-            return Err(Failure::Option { option: "--hold-out", reason });
+            return Err(Failure::option("--hold-out", reason));
         }
-        found.into_iter().for_each(|record| record.guess.held_out = true);
+        found.for_each(|record| record.guess.held_out = true);
     }
     Ok(())
 }
@@ -203,4 +203,126 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
         ]);
     }
     indented(&table, indent)
+}
+
+/// What models are compared with in time.
+#[derive(Debug, Args)]
+pub struct HistoryArguments {
+    /// Flight records, each of the condition that its name says: files, or folders with all that is in them. The models answer to their
+    /// sticks, and their share of time within tolerances is told; may be repeated.
+    #[arg(long, value_name = "PATH")]
+    pub records: Vec<PathBuf>,
+    /// The unit of a channel's samples in records that do not say it; may be repeated.
+    #[arg(long, value_name = "CHANNEL=UNIT", value_parser = channel_unit, requires = "records")]
+    pub unit: Vec<OfChannel<String>>,
+}
+
+/// The records of each condition.
+#[derive(Default)]
+pub(super) struct ReadHistories {
+    /// They.
+    pub(super) conditions: Vec<HistoryRecords>,
+    /// What was asked for and could not be read, or not all of it.
+    unread: Vec<String>,
+}
+
+impl ReadHistories {
+    /// How the command ends whose work was done with them.
+    pub(super) fn ended(&self) -> Result<(), Failure> {
+        let paths = self.unread.join(", ");
+        if paths.is_empty() { Ok(()) } else { Err(Failure::Unread { paths }) }
+    }
+}
+
+impl HistoryArguments {
+    /// The records of each condition, topics brought to a clock for this band; what is not taken is told on standard error.
+    pub(super) fn read(&self, dataset: &Dataset, band: Band) -> Result<ReadHistories, Failure> {
+        if self.records.is_empty() {
+            return Ok(ReadHistories::default());
+        }
+        let FoundRecords { tables, unread, .. } = found_records(&self.records)?;
+        let mut unread: Vec<String> = unread.iter().map(|path| sanitized_path(path)).collect();
+        let mut channels = RecordChannels::of_dataset(dataset);
+        channels.resampling.band_end = Some(band.max());
+        say_conversions("--unit", &self.unit, SaidConversion::Unit, &mut channels)?;
+        let tables = with_topics_joined(tables, &channels, &TimeWish::default());
+        let records = tables.into_iter().filter_map(|table| record_of(table, dataset, &channels, &mut unread));
+        let (of, mut records): (Vec<ConditionId>, Vec<LaidOutRecord>) = records.unzip();
+        leave_out_copies(&mut records);
+        records.iter().for_each(|record| drop(tell_copies(record)));
+        let preparation = preparation(dataset);
+        let conditions = dataset.conditions().iter().map(|condition| {
+            let own = of.iter().zip(&records).filter(|(of, _)| **of == condition.id()).map(|(_, record)| record);
+            HistoryRecords::of(condition.id(), own, preparation.clone())
+        });
+        Ok(ReadHistories { conditions: conditions.filter(|of| !of.records.is_empty()).collect(), unread })
+    }
+}
+
+/// The answers of the models to records, with a word about how far it is on a terminal.
+pub(super) fn time_histories(analysis: &Analysis, records: &ReadHistories) -> Result<TimeHistories, Failure> {
+    let records = records.conditions.as_slice();
+    let progress = TerminalProgress::new("simulating records");
+    let execution = Execution::new(&Pool, &progress, HistoryRecords::steps(records));
+    Ok(time_histories_of(analysis, records, &analysis.study.requirements.tolerances, &execution)?)
+}
+
+/// A record and its condition, as the dataset says of it where it does; none where it has no condition, or its columns are not clear:
+/// one whose units are not said is among what was not read.
+fn record_of(
+    table: RecordTable,
+    dataset: &Dataset,
+    channels: &RecordChannels,
+    unread: &mut Vec<String>,
+) -> Option<(ConditionId, LaidOutRecord)> {
+    let entry = entry_of_dataset(dataset, &table);
+    let named = entry.map(|_| channels.clone().of_named_records());
+    let channels = named.as_ref().unwrap_or(channels);
+    let (record, _) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+    let name = record.table.name.clone();
+    let (condition, record) = match (entry, dataset.conditions()) {
+        (Some((condition, entry)), _) => (Some(condition), record.as_said(entry, channels)),
+        (None, [only]) => (Some(only.id()), record),
+        (None, _) => (record.guess.condition_of(dataset), record),
+    };
+    let Some(condition) = condition else {
+        caution(&format!("{name}: left out: its name says no condition of the dataset"));
+        return None;
+    };
+    record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
+    record.problems.iter().for_each(|words| caution(&format!("{name}: left out: {words}")));
+    let is_unsaid = record.problems.iter().any(|problem| matches!(problem, LayoutProblem::UnsaidUnit { .. }));
+    unread.extend(is_unsaid.then(|| sanitized(&name)));
+    if !record.used {
+        note(&format!("{name}: left out: the dataset says so"));
+    }
+    record.used_flight()?;
+    Some((condition, record))
+}
+
+/// What a dataset says of a record, and the condition: by its name in a file of the same name, or in an archive of another.
+fn entry_of_dataset<'d>(dataset: &'d Dataset, table: &RecordTable) -> Option<(ConditionId, &'d ConditionRecord)> {
+    let file_name = |file: &str| Path::new(file).file_name().map(ToOwned::to_owned);
+    let is_it = |entry: &&ConditionRecord| {
+        let same_file = file_name(&entry.file) == file_name(&table.source.file);
+        let same_name = entry.variable.is_some() && entry.name == table.name;
+        (same_file || same_name) && entry.variable == table.source.variable && entry.part_s.is_none()
+    };
+    dataset.conditions().iter().find_map(|of| Some((of.id(), of.records().iter().find(is_it)?)))
+}
+
+/// Tells of which record this is another under a second name, and gives that with the words.
+fn tell_copies(record: &LaidOutRecord) -> Vec<(&String, String)> {
+    let copies = record.cautions.iter().filter_map(|why| match why {
+        LayoutCaution::Copy { first } => Some((first, format!("{}: {why}", record.table.name))),
+        _ => None,
+    });
+    copies.inspect(|(_, words)| caution(words)).collect()
+}
+
+/// Every channel as it is.
+fn preparation(dataset: &Dataset) -> Preparation {
+    let (inputs, outputs) = dataset.names_of_channels();
+    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    Preparation::of(&inputs, &outputs)
 }

@@ -118,8 +118,7 @@ fn breakpoints(text: &str) -> Result<Breakpoints, String> {
 }
 
 fn formats() -> impl TypedValueParser<Value = ExportFormat> {
-    let values =
-        EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
+    let values = EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
     PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
 }
 

@@ -1,8 +1,7 @@
 //! Variants: decisions kept under names, beside the present ones.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
-use gdcm_core::dataset::{ConditionId, Pair, PairTable};
-use gdcm_core::schedule::CostChange;
+use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::study::{Analysis, Edit, Table, Variant, VariantJob, decision_differences};
 use gdcm_core::units::signed;
 

@@ -31,10 +31,20 @@ struct SolvedStages {
     delays: Memo<Arc<Problem>, Solved>,
 }
 
+/// What an analysis is carried out with.
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub(super) study: &'a Study,
+    /// The frequencies of comparison.
+    pub(super) grid: &'a FrequencyGrid,
+    /// How far the proof of each condition's gains may go.
+    pub(super) proofs: ProofBudget,
+    pub(super) execution: &'a Execution<'a>,
+}
+
 /// What a condition is compared and solved from.
 struct Measured<'a> {
-    study: &'a Study,
-    grid: &'a FrequencyGrid,
+    run: Run<'a>,
     condition: Arc<Condition>,
     /// The responses that measure distances and bounds.
     measuring: PairTable<bool>,
@@ -84,12 +94,8 @@ impl ConditionStages {
     }
 
     /// Responses and distances of the models as they are.
-    fn measured<'a>(
-        &mut self,
-        study: &'a Study,
-        grid: &'a FrequencyGrid,
-        execution: &Execution<'_>,
-    ) -> Result<Measured<'a>, Cancelled> {
+    fn measured<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
+        let Run { study, grid, execution, .. } = run;
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
         let (measuring, coherence) = (study.dataset.measuring_pairs(), study.settings.coherence_threshold);
@@ -101,23 +107,17 @@ impl ConditionStages {
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
             BundleMetrics::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
         })?;
-        Ok(Measured { study, grid, condition, measuring, responses, figures })
+        Ok(Measured { run, condition, measuring, responses, figures })
     }
 
     /// What the condition brings to the fit of the couplings; none where its representatives cannot be compared, or have no delays.
-    pub(super) fn coupling_source(
-        &mut self,
-        study: &Study,
-        grid: &FrequencyGrid,
-        proofs: ProofBudget,
-        execution: &Execution<'_>,
-    ) -> Result<Option<CouplingSource>, Cancelled> {
-        let measured = self.measured(study, grid, execution)?;
+    pub(super) fn coupling_source(&mut self, run: Run<'_>) -> Result<Option<CouplingSource>, Cancelled> {
+        let measured = self.measured(run)?;
         let source = match self.plain.compare(&measured, None) {
             Err(_) => None,
             Ok(comparison) => {
                 let input = measured.solve_input(&comparison);
-                let delays = self.plain.delays(&input, input.lead_design().as_deref(), (proofs, execution))?.1;
+                let delays = self.plain.delays(&input, input.lead_design().as_deref())?.1;
                 let chosen = [comparison.physics.model, comparison.identified.model];
                 let [physics, flight] = [(BundleKind::Physics, chosen[0]), (BundleKind::Identified, chosen[1])];
                 let response = |(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]);
@@ -131,33 +131,31 @@ impl ConditionStages {
                 })
             }
         };
-        execution.step(1);
+        run.execution.step(1);
         Ok(source)
     }
 
     /// Whatever is not kept of the analysis of the condition, of physics models with couplings where there are any.
     pub(super) fn analyze(
         &mut self,
-        study: &Study,
-        (grid, couplings): (&FrequencyGrid, Option<&Arc<FittedCouplings>>),
-        proofs: ProofBudget,
-        execution: &Execution<'_>,
+        run: Run<'_>,
+        couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
-        let measured = self.measured(study, grid, execution)?;
+        let measured = self.measured(run)?;
         let outcome = match couplings {
-            None => self.plain.compare_and_solve(&measured, None, (proofs, execution))?,
+            None => self.plain.compare_and_solve(&measured, None)?,
             Some(fitted) => self.plain.compare(&measured, None).map_or_else(
                 |failure| Ok(Err(failure)),
                 |before| {
-                    let responses = self.coupled_responses(study, couplings, measured.responses);
+                    let responses = self.coupled_responses(run.study, couplings, measured.responses);
                     let measured = Measured { responses, ..measured };
-                    let outcome = self.coupled.compare_and_solve(&measured, couplings, (proofs, execution))?;
+                    let outcome = self.coupled.compare_and_solve(&measured, couplings)?;
                     let coupled = CoupledCondition { before, fitted: Arc::clone(fitted) };
                     Ok(outcome.map(|result| ConditionAnalysis { coupled: Some(coupled), ..result }))
                 },
             )?,
         };
-        execution.step(1);
+        run.execution.step(1);
         Ok(outcome)
     }
 
@@ -165,19 +163,17 @@ impl ConditionStages {
     /// kept of that is not computed again. The couplings stay those of the representatives.
     pub(super) fn substitutions(
         &mut self,
-        study: &Study,
+        run: Run<'_>,
         (analysis, couplings): (&ConditionAnalysis, Option<&Arc<FittedCouplings>>),
-        grid: &FrequencyGrid,
-        execution: &Execution<'_>,
     ) -> Result<ConditionSubstitutions, Cancelled> {
+        let Run { study, grid, execution, .. } = run;
         let grid_key = (study.settings.band, study.settings.points);
         let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
         let responses = self.coupled_responses(study, couplings, responses);
-        let substituting = Substituting { study, analysis, grid, responses: &responses, couplings };
-        let (settings, measuring) = (&study.settings, study.dataset.measuring_pairs());
-        self.substitutions.complete(&substituting, execution, |mismatch, delta| {
-            let input = SolveInput::new(settings, &measuring, grid.omega(), (mismatch, &delta));
-            let solved = SolvedStages::default().solve(&input, SUBSTITUTION_PROOF, execution)?;
+        let substituting = Substituting { run, analysis, responses: &responses, couplings };
+        let measuring = study.dataset.measuring_pairs();
+        self.substitutions.complete(&substituting, |mismatch, delta| {
+            let solved = SolvedStages::default().solve(&SolveInput::new(run, &measuring, (mismatch, &delta)))?;
             Ok(solved.ok().map(|solved| {
                 let gain = solved.gain_problem.delta.clone();
                 SubstitutedOptimum { correction: solved.correction(), delta: Delta { gain, ..delta } }
@@ -201,10 +197,17 @@ impl ConditionStages {
     }
 }
 
+impl Run<'_> {
+    /// The optimum of a problem, proven as far as may be.
+    fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
+        solved(problem, self.proofs, self.execution.progress())
+    }
+}
+
 impl Measured<'_> {
     fn solve_input<'b>(&'b self, comparison: &'b Comparison) -> SolveInput<'b> {
         let compared = (&comparison.representative.mismatch, &comparison.delta);
-        SolveInput::new(&self.study.settings, &self.measuring, self.grid.omega(), compared)
+        SolveInput::new(self.run, &self.measuring, compared)
     }
 }
 
@@ -215,7 +218,7 @@ impl SolvedStages {
         measured: &Measured<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<Arc<Comparison>, ConditionFailure> {
-        let Measured { study, grid, condition, measuring, responses, figures } = measured;
+        let Measured { run: Run { study, grid, .. }, condition, measuring, responses, figures } = measured;
         let settings = &study.settings;
         let choice = study.choice(condition.id());
         let figures_key = ((settings.band, settings.points), measuring.clone(), settings.coherence_threshold);
@@ -240,22 +243,21 @@ impl SolvedStages {
         &mut self,
         measured: &Measured<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
-        (proofs, execution): (ProofBudget, &Execution<'_>),
     ) -> Result<Result<ConditionAnalysis, ConditionFailure>, Cancelled> {
         let comparison = match self.compare(measured, couplings) {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
-        let (settings, omega) = (&measured.study.settings, measured.grid.omega());
+        let (settings, omega) = (&measured.run.study.settings, measured.run.grid.omega());
         let (models, average) = (&comparison.representative, settings.cost_average);
         let input = measured.solve_input(&comparison);
-        let solved = match self.solve(&input, proofs, execution)? {
+        let solved = match self.solve(&input)? {
             Ok(solved) => solved,
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
         let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, omega, average));
-        let offer = self.offer(&input, &solved.gain_problem.constrained, &cost, execution)?;
+        let offer = self.offer(&input, &solved.gain_problem.constrained, &cost)?;
         let cautions = cautions_of(settings, &comparison, &measured.figures);
         let Optima { gain_problem, delay_problem, gains, delays, compensated } = solved;
         Ok(Ok(ConditionAnalysis {
@@ -282,25 +284,24 @@ impl SolvedStages {
         input: &SolveInput<'_>,
         held: &PairTable<bool>,
         now: &PairTable<Option<CostChange>>,
-        execution: &Execution<'_>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
-        let settings = input.settings;
+        let (settings, omega) = (input.settings(), input.run.grid.omega());
         let mut held_s = held.marked().map(|pair| input.delta.band_delay_s[pair].unwrap_or_default()).peekable();
         let is_wanted = held_s.peek().is_some() && held_s.all(|delay_s| delay_s < 0.0);
         if settings.phase == PhaseCorrection::Lead || !is_wanted {
             return Ok(None);
         }
-        let design = Arc::new(LeadDesign::new(settings.lead, input.omega.into()));
+        let design = Arc::new(LeadDesign::new(settings.lead, omega.into()));
         let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
         // The weight decides on shares, not on what is held: it is 1 whatever delays are asked with.
         let asked = input.delay_problem(Some(&design));
         let problem = Problem { constrained: held.clone(), bounds, alpha: 1.0, ..asked };
-        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), execution.progress());
+        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), input.run.execution.progress());
         // An offer that cannot be made is none.
         let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
         let leads = ChannelLeads::new(design, solution.channels());
         let mismatch = input.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
-        Ok(LeadOffer::of(leads, &mismatch, now, (input.omega, settings.cost_average)))
+        Ok(LeadOffer::of(leads, &mismatch, now, (omega, settings.cost_average)))
     }
 
     /// The delays, or signed delays, with what they were asked to do.
@@ -308,23 +309,16 @@ impl SolvedStages {
         &mut self,
         input: &SolveInput<'_>,
         design: Option<&LeadDesign>,
-        (proofs, execution): (ProofBudget, &Execution<'_>),
     ) -> Result<(Arc<Problem>, Solved), Cancelled> {
         let problem = Arc::new(input.delay_problem(design));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
-        let delays = self.delays.get_or_fail(Arc::clone(&problem), solve)?;
+        let delays = self.delays.get_or_fail(Arc::clone(&problem), |problem| input.run.solved(problem))?;
         Ok((problem, delays))
     }
 
     /// The delays, then the gains on what leads leave (M15.5).
-    fn solve(
-        &mut self,
-        input: &SolveInput<'_>,
-        proofs: ProofBudget,
-        execution: &Execution<'_>,
-    ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
+    fn solve(&mut self, input: &SolveInput<'_>) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
         let design = input.lead_design();
-        let (delay_problem, delays) = self.delays(input, design.as_deref(), (proofs, execution))?;
+        let (delay_problem, delays) = self.delays(input, design.as_deref())?;
         let leads = match (&delays, design) {
             (Err(error), Some(_)) => return Ok(Err(ConditionFailure::Delays(error.clone()))),
             (Ok(delays), Some(design)) => Some(ChannelLeads::new(design, delays.channels())),
@@ -332,8 +326,7 @@ impl SolvedStages {
         };
         let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
-        let solve = |problem: &Arc<Problem>| solved(problem, proofs, execution.progress());
-        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), solve)?;
+        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), |problem| input.run.solved(problem))?;
         Ok(match (gains, delays) {
             (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
             (Err(error), _) => Err(ConditionFailure::Gains(error)),
@@ -347,34 +340,33 @@ pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000
 
 /// What the optima of a condition are asked for.
 struct SolveInput<'a> {
-    settings: &'a Settings,
+    run: Run<'a>,
     measuring: &'a PairTable<bool>,
-    omega: &'a [f64],
     mismatch: &'a Mismatches,
     delta: &'a Delta,
     delay_upper_s: f64,
 }
 
 impl<'a> SolveInput<'a> {
-    fn new(
-        settings: &'a Settings,
-        measuring: &'a PairTable<bool>,
-        omega: &'a [f64],
-        (mismatch, delta): (&'a Mismatches, &'a Delta),
-    ) -> Self {
-        let by_quantile = || delay_upper_s(mismatch, measuring, omega, settings.quantile);
+    fn new(run: Run<'a>, measuring: &'a PairTable<bool>, (mismatch, delta): (&'a Mismatches, &'a Delta)) -> Self {
+        let settings = &run.study.settings;
+        let by_quantile = || delay_upper_s(mismatch, measuring, run.grid.omega(), settings.quantile);
         let delay_upper_s = settings.delay_upper_s.unwrap_or_else(by_quantile);
-        Self { settings, measuring, omega, mismatch, delta, delay_upper_s }
+        Self { run, measuring, mismatch, delta, delay_upper_s }
+    }
+
+    fn settings(&self) -> &'a Settings {
+        &self.run.study.settings
     }
 
     /// What lead filters have in common, where leads are asked for.
     fn lead_design(&self) -> Option<Arc<LeadDesign>> {
-        let is_asked = self.settings.phase == PhaseCorrection::Lead;
-        is_asked.then(|| Arc::new(LeadDesign::new(self.settings.lead, self.omega.into())))
+        let is_asked = self.settings().phase == PhaseCorrection::Lead;
+        is_asked.then(|| Arc::new(LeadDesign::new(self.settings().lead, self.run.grid.omega().into())))
     }
 
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
-        let (settings, delta) = (self.settings, self.delta);
+        let (settings, delta) = (self.settings(), self.delta);
         let mismatch = compensated.map_or(self.mismatch, |compensated| &compensated.mismatch);
         let by_quantile = || gain_bounds(mismatch, self.measuring, settings.quantile);
         Problem {
@@ -390,7 +382,7 @@ impl<'a> SolveInput<'a> {
 
     /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
     fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
-        let (settings, delta) = (self.settings, self.delta);
+        let (settings, delta) = (self.settings(), self.delta);
         let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { self.delay_upper_s };
         let held =
             |pair: Pair, held: &bool| *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None;

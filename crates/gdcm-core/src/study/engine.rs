@@ -96,10 +96,10 @@ impl Engine {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let execution = Execution::new(self.executor.as_ref(), progress, steps(study));
-        let couplings = fit_of(study, &grid, (&mut self.couplings, &mut self.conditions), (self.proofs, &execution))?;
-        let coupled = (&grid, couplings.as_ref().and_then(|outcome| outcome.as_ref().ok()));
-        let mut conditions =
-            analyze_conditions(&mut self.conditions, study, coupled, (self.proofs, first), &execution)?;
+        let run = Run { study, grid: &grid, proofs: self.proofs, execution: &execution };
+        let couplings = fit_of(run, &mut self.couplings, &mut self.conditions)?;
+        let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
+        let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
         let doubts = doubts_of(study, &mut conditions);
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
         if let Ok(schedule) = &mut schedule {
@@ -137,8 +137,9 @@ impl Engine {
         let execution = Execution::new(self.executor.as_ref(), progress, total);
         let analysed =
             self.conditions.iter_mut().filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
+        let run = Run { study, grid: &grid, proofs: SUBSTITUTION_PROOF, execution: &execution };
         let substitutions = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
-            Ok((id, stages.substitutions(study, (condition, analysis.fitted_couplings()), &grid, &execution)?))
+            Ok((id, stages.substitutions(run, (condition, analysis.fitted_couplings()))?))
         })?;
         Ok(Uncertainty::of(analysis, &substitutions))
     }
@@ -218,19 +219,15 @@ fn steps(study: &Study) -> usize {
 
 /// The couplings of a study, fitted to the conditions that are analysed and not held out; none where they are not asked for (M16.1).
 fn fit_of(
-    study: &Study,
-    grid: &FrequencyGrid,
-    (kept, stages): (&mut Memo<CouplingFitKey, CouplingOutcome>, &mut BTreeMap<ConditionId, ConditionStages>),
-    (proofs, execution): (ProofBudget, &Execution<'_>),
+    run: Run<'_>,
+    kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
+    stages: &mut BTreeMap<ConditionId, ConditionStages>,
 ) -> Result<Option<CouplingOutcome>, Cancelled> {
+    let Run { study, grid, execution, .. } = run;
     let Some(kind) = study.settings.couplings.kind() else { return Ok(None) };
     let chosen: Vec<_> = stages.iter_mut().filter(|(id, _)| !study.choice(**id).held_out).collect();
-    let chosen_ids: BTreeSet<ConditionId> = chosen.iter().map(|(id, _)| **id).collect();
-    let conditions = study.dataset.conditions().iter().filter(|condition| chosen_ids.contains(&condition.id()));
-    let steps = conditions.map(|condition| ConditionStages::steps(condition)).sum();
-    let sources = execution.each_mut(chosen, |(_, stages): (&ConditionId, &mut ConditionStages)| {
-        stages.coupling_source(study, grid, proofs, execution)
-    })?;
+    let steps = chosen.iter().map(|(_, stages)| ConditionStages::steps(stages.models().condition())).sum();
+    let sources = execution.each_mut(chosen, |(_, stages)| stages.coupling_source(run))?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
     let key = CouplingFitKey::of(study, kind, &sources);
     let solves = Solves { execution, steps, told: AtomicUsize::new(0) };
@@ -261,24 +258,21 @@ impl Progress for Solves<'_> {
 
 /// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
 fn analyze_conditions(
+    run: Run<'_>,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
-    study: &Study,
-    coupled: (&FrequencyGrid, Option<&Arc<FittedCouplings>>),
-    (proofs, first): (ProofBudget, Option<WantedFirst>),
-    execution: &Execution<'_>,
+    couplings: Option<&Arc<FittedCouplings>>,
+    first: Option<WantedFirst>,
 ) -> Result<Outcomes, Cancelled> {
     let mut outcomes = Outcomes::new();
     if let Some(first) = first
         && let Some(stages) = stages.get_mut(&first.condition)
     {
-        let outcome = stages.analyze(study, coupled, proofs, execution)?;
+        let outcome = stages.analyze(run, couplings)?;
         (first.tell)(&outcome);
         outcomes.insert(first.condition, outcome);
     }
-    let others = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
-    let others = execution.each_mut(others, |(id, stages): (&ConditionId, &mut ConditionStages)| {
-        Ok((*id, stages.analyze(study, coupled, proofs, execution)?))
-    })?;
+    let others: Vec<_> = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
+    let others = run.execution.each_mut(others, |(id, stages)| Ok((*id, stages.analyze(run, couplings)?)))?;
     outcomes.extend(others);
     Ok(outcomes)
 }

@@ -8,7 +8,7 @@
 
 use std::borrow::Cow;
 
-use crate::dataset::{self, ModelBands};
+use crate::dataset::ModelBands;
 use crate::requirements::{
     AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
     Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel, search_frequencies, substitution_bar,
@@ -107,7 +107,9 @@ pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
 
 /// A model made ready for its response.
 struct ReadModel<'a> {
-    model: Cow<'a, Model>,
+    dynamics: Cow<'a, Dynamics>,
+    /// How sure its response is, where the model itself says it.
+    bands: Option<&'a ModelBands>,
     sampled: SampledModel,
 }
 
@@ -121,37 +123,9 @@ enum Between {
 }
 
 impl<'a> ReadModel<'a> {
-    fn of(model: Cow<'a, Model>, band: Band) -> Self {
-        let sampled = SampledModel::of(&model.dynamics, band);
-        Self { model, sampled }
-    }
-
-    /// Bandwidth and phase delay of a response under a correction, and its phase where that speaks for a reversed channel.
-    fn bandwidth(
-        &self,
-        (pair, output): (Pair, &dataset::Channel),
-        correction: PairCorrection,
-        (settings, between): (BandwidthSettings, Between),
-        bands: Option<&ModelBands>,
-    ) -> Result<(Bandwidth, Option<f64>), AttitudeResponseError> {
-        let output = AttitudeOutput::of(output)?;
-        let exact = self.sampled.exact(pair, correction.multiplier);
-        let interpolated = self.sampled.interpolated(pair, correction.multiplier);
-        let (response, omega): (&ResponseAt<'_>, _) = match (&self.model.dynamics, between) {
-            (Dynamics::StateSpace(_), Between::Exact) => (&exact, search_frequencies(settings.band)),
-            (Dynamics::StateSpace(_), Between::Interpolated) => (&interpolated, search_frequencies(settings.band)),
-            (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
-        };
-        let attitude = AttitudeResponse::new(response, output, &omega, settings.band)?;
-        // Of the 400 points of the line that the phase delay is read from, those between its ends; ends and crossings are of the model itself.
-        let attitude = match self.model.dynamics {
-            Dynamics::StateSpace(_) => attitude.sampled_by(&interpolated),
-            Dynamics::Measured(_) => attitude,
-        };
-        let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
-        let deviation = bands.map(|bands| PairBand { bands, pair });
-        let bandwidth = Bandwidth::of(&attitude, &BandwidthSettings { above_band, ..settings }, deviation);
-        Ok((bandwidth, attitude.reversed_phase_deg()))
+    fn of(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
+        let sampled = SampledModel::of(&dynamics, band);
+        Self { dynamics, bands, sampled }
     }
 }
 
@@ -209,32 +183,65 @@ impl<'a> PreparedModels<'a> {
         let others = swaps.iter().filter(|(kind, ..)| *kind == BundleKind::Physics).map(|(_, model, _)| *model);
         let models: Vec<usize> = std::iter::once(physics).chain(others).collect();
         let band = asked.analysis.study.settings.band;
-        let prepared =
-            |&model: &usize| (model, ReadModel::of(Cow::Borrowed(&bundle(BundleKind::Physics)[model]), band));
+        let prepared = |&model: &usize| {
+            let dynamics = &bundle(BundleKind::Physics)[model].dynamics;
+            (model, ReadModel::of(Cow::Borrowed(dynamics), None, band))
+        };
         let of_physics = models.iter().map(prepared).collect();
         let coupled = |&model: &usize| {
-            let physics = &bundle(BundleKind::Physics)[model];
-            let of = asked.result.coupled_model(physics.state_space()?, Pade::default()).ok()?.into_owned();
-            Some((
-                model,
-                ReadModel::of(Cow::Owned(Model { dynamics: Dynamics::StateSpace(of), ..physics.clone() }), band),
-            ))
+            let matrices = bundle(BundleKind::Physics)[model].state_space()?;
+            let of = asked.result.coupled_model(matrices, Pade::default()).ok()?.into_owned();
+            Some((model, ReadModel::of(Cow::Owned(Dynamics::StateSpace(of)), None, band)))
         };
         let is_coupled = asked.result.coupled.is_some();
         let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
         let flight = asked.result.representative_model(BundleKind::Identified);
-        let identified = ReadModel::of(Cow::Borrowed(flight), band);
+        let identified = ReadModel::of(Cow::Borrowed(&flight.dynamics), flight.bands.as_deref(), band);
         Self { asked, physics, of_physics, of_coupled, identified, swaps }
     }
 
-    fn settings(&self, pair: Pair, between: Between) -> (BandwidthSettings, Between) {
+    /// Bandwidth and phase delay of a response of a model under a correction, and its phase where that speaks for a reversed channel.
+    fn read(
+        &self,
+        model: &ReadModel<'_>,
+        pair: Pair,
+        correction: PairCorrection,
+        between: Between,
+    ) -> Result<(Bandwidth, Option<f64>), AttitudeResponseError> {
         let study = &self.asked.analysis.study;
-        let command = study.requirements.command_of(&study.dataset.outputs()[pair.output].name);
-        (BandwidthSettings { command, band: study.settings.band, above_band: AboveBand::Marked }, between)
+        let (band, channel) = (study.settings.band, &study.dataset.outputs()[pair.output]);
+        let output = AttitudeOutput::of(channel)?;
+        let exact = model.sampled.exact(pair, correction.multiplier);
+        let interpolated = model.sampled.interpolated(pair, correction.multiplier);
+        let (response, omega): (&ResponseAt<'_>, _) = match (&*model.dynamics, between) {
+            (Dynamics::StateSpace(_), Between::Exact) => (&exact, search_frequencies(band)),
+            (Dynamics::StateSpace(_), Between::Interpolated) => (&interpolated, search_frequencies(band)),
+            (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
+        };
+        let attitude = AttitudeResponse::new(response, output, &omega, band)?;
+        // Of the 400 points of the line that the phase delay is read from, those between its ends; ends and crossings are of the model itself.
+        let attitude = match *model.dynamics {
+            Dynamics::StateSpace(_) => attitude.sampled_by(&interpolated),
+            Dynamics::Measured(_) => attitude,
+        };
+        let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
+        let settings = BandwidthSettings { command: study.requirements.command_of(&channel.name), band, above_band };
+        let deviation = model.bands.map(|bands| PairBand { bands, pair });
+        Ok((Bandwidth::of(&attitude, &settings, deviation), attitude.reversed_phase_deg()))
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
-        let mut finding = self.empty(pair, role);
+        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
+        let mut finding = BandwidthFinding {
+            condition: self.asked.id(),
+            airspeed_kt: self.asked.airspeed_kt(),
+            pair,
+            output,
+            input,
+            role,
+            model: self.asked.model_name(role),
+            ..BandwidthFinding::default()
+        };
         match self.bandwidth(pair, role) {
             Err(why) => {
                 finding.absent = finding.quantities().into_iter().map(|(name, _)| (name, why.clone())).collect();
@@ -248,49 +255,25 @@ impl<'a> PreparedModels<'a> {
         finding
     }
 
-    fn empty(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
-        let (output, input) = self.asked.analysis.study.dataset.channel_names(pair);
-        BandwidthFinding {
-            condition: self.asked.id(),
-            airspeed_kt: self.asked.airspeed_kt(),
-            pair,
-            output,
-            input,
-            role,
-            model: self.asked.model_name(role),
-            ..BandwidthFinding::default()
-        }
-    }
-
     /// The bandwidth of the model of a role, or why it has none.
     fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<(Bandwidth, Option<f64>), String> {
-        let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
-        if role == RequirementRole::Identified {
-            let (model, bands) = (&self.identified, self.identified.model.bands.as_deref());
-            let bandwidth = model.bandwidth(response, PairCorrection::NONE, self.settings(pair, Between::Exact), bands);
-            return bandwidth.map_err(|error| error.to_string());
-        }
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
-            Some(of) => PairCorrection::of(of, pair).ok_or_else(|| "the net gain is not positive".to_owned())?,
+            Some(of) => PairCorrection::of(of, pair).ok_or("the net gain is not positive")?,
         };
-        let bandwidth = self.physics_of(role, self.physics)?.bandwidth(
-            response,
-            correction,
-            self.settings(pair, Between::Exact),
-            None,
-        );
-        bandwidth.map_err(|error| error.to_string())
+        let model = match role {
+            RequirementRole::Identified => &self.identified,
+            _ => self.physics_of(role, self.physics)?,
+        };
+        self.read(model, pair, correction, Between::Exact).map_err(|error| error.to_string())
     }
 
     /// A physics model as a role has it: with the couplings where it is corrected.
-    fn physics_of(&self, role: RequirementRole, model: usize) -> Result<&ReadModel<'a>, String> {
+    fn physics_of(&self, role: RequirementRole, model: usize) -> Result<&ReadModel<'a>, &'static str> {
         if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
             return Ok(&self.of_physics[&model]);
         }
-        self.of_coupled
-            .get(&model)
-            .ok_or_else(|| "the physics model has no matrices that couplings can be put into".to_owned())
+        self.of_coupled.get(&model).ok_or("the physics model has no matrices that couplings can be put into")
     }
 
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
@@ -302,7 +285,7 @@ impl<'a> PreparedModels<'a> {
             RequirementRole::Scheduled => "the schedule is not made again for each swap of models",
             RequirementRole::Identified => {
                 finding.take_deviations(bandwidth, self.asked.analysis.study.settings.uncertainty.level);
-                match (&self.identified.model.dynamics, &self.identified.model.bands) {
+                match (&*self.identified.dynamics, self.identified.bands) {
                     (_, Some(_)) => "the band of the identified model does not reach so far",
                     (Dynamics::Measured(_), None) => "the measured response carries no band",
                     (Dynamics::StateSpace(_), None) => "the identified model carries no band",
@@ -346,12 +329,10 @@ impl<'a> PreparedModels<'a> {
             }
             _ => Some(PairCorrection::NONE),
         };
-        let model = kind.pick(*model, self.physics);
-        let response = (pair, &self.asked.analysis.study.dataset.outputs()[pair.output]);
-        let read = self.physics_of(role, model).ok();
-        let bandwidth = correction.zip(read).and_then(|(correction, read)| {
-            read.bandwidth(response, correction, self.settings(pair, Between::Interpolated), None).ok()
-        });
+        let model = self.physics_of(role, kind.pick(*model, self.physics)).ok();
+        let bandwidth = correction
+            .zip(model)
+            .and_then(|(correction, model)| self.read(model, pair, correction, Between::Interpolated).ok());
         bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
     }
 }

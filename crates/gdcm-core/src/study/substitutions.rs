@@ -23,9 +23,8 @@ pub type Swap = (BundleKind, usize, Option<Arc<Figures>>);
 /// What substitutions are made of.
 #[derive(Clone, Copy)]
 pub(super) struct Substituting<'a> {
-    pub(super) study: &'a Study,
+    pub(super) run: Run<'a>,
     pub(super) analysis: &'a ConditionAnalysis,
-    pub(super) grid: &'a FrequencyGrid,
     pub(super) responses: &'a ConditionResponses,
     pub(super) couplings: Option<&'a Arc<FittedCouplings>>,
 }
@@ -101,16 +100,17 @@ impl Substituting<'_> {
 
     /// The settings that a substitution depends on.
     fn key(&self) -> SwapKey {
-        let mut settings = self.study.settings.clone();
+        let Study { settings, dataset, .. } = self.run.study;
+        let mut settings = settings.clone();
         settings.schedule = Default::default();
         settings.uncertainty = Default::default();
         settings.gain_source = GainSource::Representatives;
-        (settings, self.study.dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())
+        (settings, dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())
     }
 
     fn compared(&self, kind: BundleKind, model: usize) -> Compared {
-        let coherence = self.study.settings.coherence_threshold;
-        Compared::of(&self.analysis.condition, self.responses, (kind, model), (self.grid, coherence))
+        let coherence = self.run.study.settings.coherence_threshold;
+        Compared::of(&self.analysis.condition, self.responses, (kind, model), (self.run.grid, coherence))
     }
 }
 
@@ -119,7 +119,6 @@ impl SubstitutionMemo {
     pub(super) fn complete(
         &mut self,
         substituting: &Substituting<'_>,
-        execution: &Execution<'_>,
         optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
     ) -> Result<ConditionSubstitutions, Cancelled> {
         let key = substituting.key();
@@ -131,12 +130,12 @@ impl SubstitutionMemo {
         let [physics, identified] = substituting.representatives();
         let models = |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
         // The mean over all pairs is no figure of the representatives: what changes are measured from is made too.
-        let base =
-            (substituting.study.settings.gain_source == GainSource::MeanOfPairs).then_some([physics, identified]);
+        let Run { study, execution, .. } = substituting.run;
+        let base = (study.settings.gain_source == GainSource::MeanOfPairs).then_some([physics, identified]);
         let wanted = swaps.iter().map(models).chain(base);
         let missing: Vec<[usize; 2]> = wanted.filter(|pair| !self.kept.contains_key(pair)).collect();
         execution.step(swaps.len().saturating_sub(missing.len()));
-        let made = make(substituting, &missing, execution, optimum)?;
+        let made = make(substituting, &missing, optimum)?;
         self.kept.extend(missing.into_iter().zip(made));
         let kept = |pair: [usize; 2]| self.kept.get(&pair).cloned().flatten();
         let substitutions: Vec<_> = swaps.iter().map(|swap| (swap.0, swap.1, kept(models(swap)))).collect();
@@ -159,7 +158,6 @@ impl SubstitutionMemo {
 fn make(
     substituting: &Substituting<'_>,
     pairs: &[[usize; 2]],
-    execution: &Execution<'_>,
     optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
 ) -> Result<Vec<Option<Arc<Figures>>>, Cancelled> {
     if pairs.is_empty() {
@@ -169,7 +167,7 @@ fn make(
     let [physics, identified] = substituting.representatives();
     let simulated = substituting.compared(BundleKind::Physics, physics);
     let reference = substituting.compared(BundleKind::Identified, identified);
-    let omega = substituting.grid.omega();
+    let omega = substituting.run.grid.omega();
     let median_phases =
         base.representative.mismatch.map(|_, mismatch| mismatch.as_ref().map(|mismatch| mismatch.median_phase(omega)));
     let substitution = |place: usize| {
@@ -197,7 +195,7 @@ fn make(
         }
         Ok(optimum(&mismatch, delta)?.map(|optimum| Arc::new(optimum.figures())))
     };
-    execution.each(pairs.len(), 1, substitution)?.into_iter().collect()
+    substituting.run.execution.each(pairs.len(), 1, substitution)?.into_iter().collect()
 }
 
 /// Natural logarithm of a ratio of 1 dB.

@@ -318,7 +318,7 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     let asked =
         |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| assembly.problems().iter().any(|of| wanted(&of.kind));
     assert!(
-        asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile { .. })),
+        asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile(_))),
         "the response has no units: {:?}",
         assembly.told()
     );

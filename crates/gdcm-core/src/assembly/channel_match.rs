@@ -125,7 +125,7 @@ impl ChannelMatch {
         let said = label.unit.as_deref().filter(|unit| !unit.trim().is_empty());
         let from = said.or(rule.unit_in_files.as_deref());
         let Some(from) = from else {
-            self.problems.push(ProblemKind::UnitOfFile { channel: rule.name.clone() });
+            self.problems.push(ProblemKind::UnitOfFile(rule.name.clone()));
             return ChannelUse { index, factor: 1.0, words: None };
         };
         let by_rule =
@@ -334,7 +334,7 @@ mod tests {
     fn a_unit_that_is_not_said_is_asked_for_and_never_guessed() {
         let rules = [rule("LON", "%")];
         let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &rules, (&[], &none()), false);
-        assert_eq!(found.problems, [ProblemKind::UnitOfFile { channel: "LON".into() }]);
+        assert_eq!(found.problems, [ProblemKind::UnitOfFile("LON".into())]);
         let said = [ChannelRule { unit_in_files: Some("in".into()), ..rule("LON", "%") }];
         let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[], &none()), false);
         assert!(matches!(&found.problems[..], [ProblemKind::Conversion { .. }]));

@@ -15,11 +15,8 @@ pub enum ProblemKind {
     #[error("{0}: choose a unit")]
     NoUnit(String),
     /// Files that do not say the unit of a channel.
-    #[error("{channel}: choose the unit that it has in files that do not say one")]
-    UnitOfFile {
-        /// The channel of the dataset.
-        channel: String,
-    },
+    #[error("{0}: choose the unit that it has in files that do not say one")]
+    UnitOfFile(String),
     /// A unit that cannot be converted.
     #[error(
         "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset: there is no factor from one to the other; enter one"

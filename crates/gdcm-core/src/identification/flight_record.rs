@@ -99,11 +99,8 @@ pub enum Cause {
     SamplesMissing(Vec<Signal>),
     /// Outputs stood still while others moved.
     Frozen(Vec<Signal>),
-    /// What is left between two gaps is shorter than the least segment.
-    SegmentTooShort {
-        /// Its length \[s\].
-        length_s: f64,
-    },
+    /// What is left between two gaps is shorter than the least segment; its length \[s\].
+    SegmentTooShort(f64),
 }
 
 /// What was done about a gap.
@@ -143,7 +140,7 @@ impl fmt::Display for Gap {
             Cause::RowsMissing => f.write_str("rows missing")?,
             Cause::SamplesMissing(signals) => write!(f, "{} missing", names(signals))?,
             Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
-            Cause::SegmentTooShort { length_s } => write!(f, "only {length_s:.1} s between gaps")?,
+            Cause::SegmentTooShort(length_s) => write!(f, "only {length_s:.1} s between gaps")?,
         }
         f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })
     }

@@ -120,10 +120,8 @@ fn report(
     let systems = fit.systems(likelihood).ok_or_else(no_model)?;
     let covariance = ParameterCovariance::of(likelihood, fit, &systems, fit.cost).ok_or_else(no_model)?;
     // By way of a reference the cost says nothing: what is known is what the lines as logged tell of this model (M14.15).
-    let logged = match &data.direct {
-        Some(direct) => Some(ParameterCovariance::of_lines(direct, fit).ok_or_else(no_model)?),
-        None => None,
-    };
+    let of_lines = |direct| ParameterCovariance::of_lines(direct, fit).ok_or_else(no_model);
+    let logged = data.direct.as_ref().map(of_lines).transpose()?;
     let known = logged.as_ref().unwrap_or(&covariance);
     // By way of a reference nothing is fed back, and every record is seen as the same reference shows it.
     let is_direct = options.references == 0;

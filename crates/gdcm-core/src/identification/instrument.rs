@@ -81,14 +81,14 @@ impl InstrumentPoint {
         let inverse = pseudo_inverse(&of_inputs);
         let through = inverse.adjoint() * &spread * &inverse;
         let estimate = EstimatePoint {
-            omega: fit.omega(),
+            omega: fit.window.omega,
             variance: DMatrix::from_fn(outputs, inputs, |o, i| noise[(o, o)] * through[(i, i)].re.max(0.0)),
             noise,
             power: DVector::from_fn(outputs, |o, _| fit.power()[o]),
             coherence: DVector::from_fn(outputs, |o, _| coherence[o]),
             partial_coherence: DMatrix::from_fn(outputs, inputs, |_, i| coherence[outputs + i]),
             condition: condition(of_inputs),
-            half_width: fit.half_width(),
+            half_width: fit.window.half_width,
             freedom: fit.freedom,
             response,
         };

@@ -22,12 +22,9 @@ pub enum LocalPolynomialError {
     /// There are no lines, inputs or outputs.
     #[error("there is nothing to estimate a frequency response from")]
     Nothing,
-    /// Spectra of differing channels.
-    #[error("record {} has another number of channels than the first", record + 1)]
-    ChannelsDiffer {
-        /// Which record, counted from 0.
-        record: usize,
-    },
+    /// Spectra of differing channels; the record, counted from 0.
+    #[error("record {} has another number of channels than the first", .0 + 1)]
+    ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
     #[error("the spectra hold values that are not finite")]
     NotFinite,
@@ -85,7 +82,7 @@ pub(super) fn local_fits(
         return Err(LocalPolynomialError::Nothing);
     }
     if let Some(other) = spectra.iter().find(|s| channels(s) != channels(first)) {
-        return Err(LocalPolynomialError::ChannelsDiffer { record: other.record });
+        return Err(LocalPolynomialError::ChannelsDiffer(other.record));
     }
     let finite = |lines: &DMatrix<Complex<f64>>| lines.norm_squared().is_finite();
     let finite = spectra.iter().all(|s| finite(&s.inputs) && finite(&s.outputs));
@@ -97,9 +94,11 @@ pub(super) fn local_fits(
 }
 
 /// The lines around a frequency.
-struct Window {
-    omega: f64,
-    half_width: f64,
+pub(super) struct Window {
+    /// Its centre \[rad/s\].
+    pub(super) omega: f64,
+    /// \[rad/s\].
+    pub(super) half_width: f64,
     /// Terms of the polynomials.
     terms: usize,
     /// Of each spectrum the first line inside and the first one beyond; as one where the spectrum has too few.
@@ -155,7 +154,8 @@ impl Window {
 
 /// Local polynomials fitted to the lines of one window.
 pub(super) struct LocalFit {
-    window: Window,
+    /// The window.
+    pub(super) window: Window,
     /// The triangular factor of `[A B]`.
     r: DMatrix<Complex<f64>>,
     inputs: usize,
@@ -176,16 +176,6 @@ impl LocalFit {
 
     fn unknowns(&self) -> usize {
         self.window.terms * self.inputs
-    }
-
-    /// The centre \[rad/s\].
-    pub(super) fn omega(&self) -> f64 {
-        self.window.omega
-    }
-
-    /// \[rad/s\].
-    pub(super) fn half_width(&self) -> f64 {
-        self.window.half_width
     }
 
     /// Mean power of the lines of each output.
@@ -252,7 +242,7 @@ impl LocalFit {
             (0..outputs).for_each(|o| partial_coherence[(o, i)] = explained(left[o], without[o]));
         }
         EstimatePoint {
-            omega: self.omega(),
+            omega: self.window.omega,
             response: self.response(),
             variance: DMatrix::from_fn(outputs, inputs, |o, i| noise[(o, o)] * spread[(i, i)].re),
             noise,
@@ -260,7 +250,7 @@ impl LocalFit {
             coherence: DVector::from_vec(self.coherence()),
             partial_coherence,
             condition: condition(self.r.view((0, 0), (inputs, inputs)).clone_owned()),
-            half_width: self.half_width(),
+            half_width: self.window.half_width,
             freedom: self.freedom,
         }
     }

@@ -164,18 +164,24 @@ impl<'a> Gram<'a> {
         left.iter().zip(right.iter()).map(|(a, b)| a.conj() * b).sum()
     }
 
+    /// Real and imaginary part of a product of each row at each line: two columns a line.
+    fn line_products(&self, rows: usize, product: impl Fn(usize, usize) -> Complex<f64>) -> DMatrix<f64> {
+        let mut products = DMatrix::zeros(rows, 2 * self.lines.omega.len());
+        for k in 0..self.lines.omega.len() {
+            let (mut real, mut imaginary) = products.columns_range_pair_mut(2 * k, 2 * k + 1);
+            for row in 0..rows {
+                let product = product(k, row);
+                (real[row], imaginary[row]) = (product.re, product.im);
+            }
+        }
+        products
+    }
+
     /// `B` and tau with themselves.
     fn add_resolvent(&mut self) {
         let (order, scalars) = (self.model.order(), self.resolvent_scalars.nrows());
         let pairs: Vec<_> = (0..order).flat_map(|i| (i..order).map(move |other| (i, other))).collect();
-        let mut left = DMatrix::zeros(pairs.len(), 2 * self.lines.omega.len());
-        for k in 0..self.lines.omega.len() {
-            let (mut real, mut imaginary) = left.columns_range_pair_mut(2 * k, 2 * k + 1);
-            for (row, &(i, other)) in pairs.iter().enumerate() {
-                let product = self.resolvent_product(k, i, other);
-                (real[row], imaginary[row]) = (product.re, product.im);
-            }
-        }
+        let left = self.line_products(pairs.len(), |k, row| self.resolvent_product(k, pairs[row].0, pairs[row].1));
         let scalar_pairs: Vec<_> = (0..scalars).flat_map(|s| (0..scalars).map(move |t| (s, t))).collect();
         let products = left * scalar_products(&self.resolvent_scalars, &self.resolvent_scalars, &scalar_pairs);
         for (row, &(i, other)) in pairs.iter().enumerate() {
@@ -222,14 +228,8 @@ impl<'a> Gram<'a> {
     /// `B` and tau with `C`, `D`, c1 and c0.
     fn add_resolvent_with_weight(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
-        let mut left = DMatrix::zeros(order * outputs, 2 * self.lines.omega.len());
-        for k in 0..self.lines.omega.len() {
-            let (mut real, mut imaginary) = left.columns_range_pair_mut(2 * k, 2 * k + 1);
-            for row in 0..order * outputs {
-                let product = self.weight_product(k, row % outputs, row / outputs).conj();
-                (real[row], imaginary[row]) = (product.re, product.im);
-            }
-        }
+        let product = |k: usize, row: usize| self.weight_product(k, row % outputs, row / outputs).conj();
+        let left = self.line_products(order * outputs, product);
         let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
         let scalar_pairs: Vec<_> = (0..resolvent_count).flat_map(|s| (0..weight_count).map(move |t| (s, t))).collect();
         let products = left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
@@ -253,24 +253,15 @@ impl<'a> Gram<'a> {
     /// The blocks with everything.
     fn add_blocks(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
-        let count = self.lines.omega.len();
         let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
         let columns = self.block_columns();
         for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
-            let (mut with_resolvent, mut with_weight) =
-                (DMatrix::zeros(order, 2 * count), DMatrix::zeros(outputs, 2 * count));
-            for k in 0..count {
-                // conj(s_p) goes into the left factor.
-                let s = self.weight_scalars[(scalar, k)].conj() * sign;
-                for i in 0..order {
-                    let product = self.resolvent_product(k, vector, i) * s;
-                    (with_resolvent[(i, 2 * k)], with_resolvent[(i, 2 * k + 1)]) = (product.re, -product.im);
-                }
-                for o in 0..outputs {
-                    let product = self.weight_product(k, o, vector).conj() * s;
-                    (with_weight[(o, 2 * k)], with_weight[(o, 2 * k + 1)]) = (product.re, -product.im);
-                }
-            }
+            // conj(s_p) goes into the left factor.
+            let s = |k: usize| self.weight_scalars[(scalar, k)].conj() * sign;
+            let product = |k: usize, i: usize| (self.resolvent_product(k, vector, i) * s(k)).conj();
+            let with_resolvent = self.line_products(order, product);
+            let with_weight =
+                self.line_products(outputs, |k, o| (self.weight_product(k, o, vector).conj() * s(k)).conj());
             let by_resolvent = &with_resolvent * parts(&self.resolvent_scalars);
             let by_weight = with_weight * parts(&self.weight_scalars);
             for i in 0..order {

@@ -113,7 +113,7 @@ impl Preparation {
     fn checked(&self) -> Result<(), PreparationError> {
         let is_missing = |role: &ChannelSide| role.of(&self.inputs, &self.outputs).is_empty();
         if let Some(role) = [ChannelSide::Input, ChannelSide::Output].into_iter().find(is_missing) {
-            return Err(PreparationError::NoChannels { role });
+            return Err(PreparationError::NoChannels(role));
         }
         for (signal, channel) in self.channels() {
             let hold_s = match channel.hold {
@@ -127,10 +127,10 @@ impl Preparation {
             }
         }
         if !(self.least_segment_s.is_finite() && self.least_segment_s > 0.0) {
-            return Err(PreparationError::LeastSegment { seconds: self.least_segment_s });
+            return Err(PreparationError::LeastSegment(self.least_segment_s));
         }
         if self.longest_bridge > LONGEST_BRIDGE {
-            return Err(PreparationError::Bridge { samples: self.longest_bridge });
+            return Err(PreparationError::Bridge(self.longest_bridge));
         }
         Ok(())
     }
@@ -190,11 +190,8 @@ pub enum PreparationError {
     #[error("there are no flight records")]
     NoRecords,
     /// No inputs or no outputs.
-    #[error("no {role} is named: identification needs at least one input and one output")]
-    NoChannels {
-        /// Which are missing.
-        role: ChannelSide,
-    },
+    #[error("no {0} is named: identification needs at least one input and one output")]
+    NoChannels(ChannelSide),
     /// A record has other channels than the ones named.
     #[error("record {record} has {found} {role}s where {named} are named")]
     ChannelsDiffer {
@@ -228,17 +225,11 @@ pub enum PreparationError {
         seconds: f64,
     },
     /// The least length of a segment is no length.
-    #[error("a least piece of {seconds} s: it must be greater than 0")]
-    LeastSegment {
-        /// As asked for \[s\].
-        seconds: f64,
-    },
+    #[error("a least piece of {0} s: it must be greater than 0")]
+    LeastSegment(f64),
     /// The longest gap to bridge is too long.
-    #[error("gaps of {samples} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
-    Bridge {
-        /// As asked for.
-        samples: usize,
-    },
+    #[error("gaps of {0} samples are too long to be bridged: at most {LONGEST_BRIDGE}")]
+    Bridge(usize),
     /// Time does not go on.
     #[error(
         "record {record}: time goes from {previous_s} s to {time_s} s in row {}. Sort the rows, or delete the repeated ones",
@@ -386,7 +377,7 @@ fn prepare_record(
         if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
             segments.push(run.segment(index, start_s, clock.sample_time_s, preparation));
         } else {
-            let (cause, treatment) = (Cause::SegmentTooShort { length_s }, Treatment::CutOut);
+            let (cause, treatment) = (Cause::SegmentTooShort(length_s), Treatment::CutOut);
             gaps.push(Gap { start_s, end_s: start_s + length_s, cause, treatment });
             cautions.push(RecordCaution::SegmentDropped { record: record.name.clone(), start_s, length_s });
         }

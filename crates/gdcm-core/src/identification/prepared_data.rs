@@ -319,18 +319,12 @@ pub enum ScalingError {
     /// There is nothing to scale.
     #[error("there are no flight records")]
     NoSegments,
-    /// A segment has other channels than the first.
-    #[error("piece {} of the flight records has another number of channels than the first", segment + 1)]
-    ChannelsDiffer {
-        /// Which, counted from 0.
-        segment: usize,
-    },
-    /// A segment holds a sample that is not finite, or one whose square is not.
-    #[error("piece {} of the flight records holds values that are not finite or absurdly large", segment + 1)]
-    NotFinite {
-        /// Which, counted from 0.
-        segment: usize,
-    },
+    /// A segment has other channels than the first; which, counted from 0.
+    #[error("piece {} of the flight records has another number of channels than the first", .0 + 1)]
+    ChannelsDiffer(usize),
+    /// A segment holds a sample that is not finite, or one whose square is not; which, counted from 0.
+    #[error("piece {} of the flight records holds values that are not finite or absurdly large", .0 + 1)]
+    NotFinite(usize),
     /// A channel is constant in every segment.
     #[error("{role} {} does not move in any record: leave it out", index + 1)]
     Constant {
@@ -350,7 +344,7 @@ impl Scales {
         let first = segments.first().ok_or(ScalingError::NoSegments)?;
         let channels = |segment: &Segment| (segment.inputs.ncols(), segment.outputs.ncols());
         if let Some(segment) = segments.iter().position(|p| channels(p) != channels(first)) {
-            return Err(ScalingError::ChannelsDiffer { segment });
+            return Err(ScalingError::ChannelsDiffer(segment));
         }
         let scales = |role, side: fn(&Segment) -> &DMatrix<f64>| {
             let scales = rms(segments, side)?.into_iter().enumerate();
@@ -393,7 +387,7 @@ fn rms(segments: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<
             let mean = if rows == 0 { 0.0 } else { column.sum() / rows as f64 };
             squares[c] += column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
             if !squares[c].is_finite() {
-                return Err(ScalingError::NotFinite { segment: index });
+                return Err(ScalingError::NotFinite(index));
             }
             greatest[c] = greatest[c].max(column.amax());
         }

@@ -77,27 +77,21 @@ pub enum ValidationError {
     /// There are no segments.
     #[error("there is no record to compare the model with")]
     NoSegments,
-    /// The model has other inputs or outputs than a segment.
-    #[error("record {} has other channels than the model", record + 1)]
-    ChannelsDiffer {
-        /// Which record, counted from 0.
-        record: usize,
-    },
+    /// The model has other inputs or outputs than a segment; of which record, counted from 0.
+    #[error("record {} has other channels than the model", .0 + 1)]
+    ChannelsDiffer(usize),
     /// The response of the model over one sample is not finite.
     #[error("the model cannot be simulated: its matrices do not fit each other or hold values that are not finite")]
     NotSimulated,
     /// The longest window is no time.
     #[error("windows must last longer than 0 s")]
     NoWindow,
-    /// Too few samples to estimate an initial state and to compare as well.
+    /// Too few samples to estimate an initial state and to compare as well; length of the longest window \[s\].
     #[error(
-        "too short to compare in time: windows of {window_s:.2} s, the record or {TIME_CONSTANTS} time constants of the \
+        "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
          model's fastest diverging mode, hold too few samples for its initial state"
     )]
-    TooShort {
-        /// Length of the longest window \[s\].
-        window_s: f64,
-    },
+    TooShort(f64),
     /// The simulation leaves the range of numbers.
     #[error("the simulated outputs are not finite")]
     NotFinite,
@@ -126,7 +120,7 @@ pub fn validate(
     }
     let differs = |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
     if let Some(segment) = segments.iter().find(differs) {
-        return Err(ValidationError::ChannelsDiffer { record: segment.record });
+        return Err(ValidationError::ChannelsDiffer(segment.record));
     }
     if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
         return Err(ValidationError::NoWindow);
@@ -141,7 +135,7 @@ pub fn validate(
     let windows: Vec<ValidationWindow> =
         windows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     if windows.is_empty() {
-        return Err(ValidationError::TooShort { window_s });
+        return Err(ValidationError::TooShort(window_s));
     }
     let (fit_percent, theil) = figures(&windows);
     Ok(Validation { windows, fit_percent, theil })

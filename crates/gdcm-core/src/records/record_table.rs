@@ -181,17 +181,11 @@ impl Separation {
         if let Some(column) = (0..table.columns.len()).find(numbers) {
             return Self::ByColumn(column);
         }
-        match TimeBase::find(table) {
-            Some(column)
-                if {
-                    let parts = rising_parts(&table.columns[column].values);
-                    parts.len() > 1 && parts.iter().all(|part| part.len() >= Self::FEWEST)
-                } =>
-            {
-                Self::ByTime(column)
-            }
-            _ => Self::None,
-        }
+        let restarts = |column: &usize| {
+            let parts = rising_parts(&table.columns[*column].values);
+            parts.len() > 1 && parts.iter().all(|part| part.len() >= Self::FEWEST)
+        };
+        TimeBase::find(table).filter(restarts).map_or(Self::None, Self::ByTime)
     }
 }
 
@@ -347,11 +341,8 @@ fn seconds_in(unit: &str) -> Option<(&'static str, f64)> {
 }
 
 fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
-    if let Some(unit) = stamps.unit.as_deref().and_then(seconds_in) {
-        return (unit, String::new());
-    }
     let last_word = stamps.name.rsplit(|c: char| !c.is_alphanumeric()).next().filter(|word| *word != stamps.name);
-    if let Some(unit) = last_word.and_then(seconds_in) {
+    if let Some(unit) = stamps.unit.as_deref().into_iter().chain(last_word).find_map(seconds_in) {
         return (unit, String::new());
     }
     let step = median_step(&stamps.values).unwrap_or(f64::NAN);

@@ -305,7 +305,7 @@ fn hostile_lines_are_refused() {
     }
     let mut bad = good.clone();
     bad[2].inputs = DMatrix::zeros(3, bad[2].omega.len());
-    assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::ChannelsDiffer { record: 2 }));
+    assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::ChannelsDiffer(2)));
     let silent: Vec<Spectrum> = good
         .iter()
         .map(|s| Spectrum { inputs: s.inputs.scale(0.0), outputs: s.outputs.scale(0.0), ..s.clone() })
@@ -330,13 +330,13 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
     };
     assert_eq!(Scales::of(&[]), Err(ScalingError::NoSegments));
     assert_eq!(Scales::of(&[segment(9, 0.1)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
-    assert_eq!(Scales::of(&[segment(9, f64::NAN)]), Err(ScalingError::NotFinite { segment: 0 }));
+    assert_eq!(Scales::of(&[segment(9, f64::NAN)]), Err(ScalingError::NotFinite(0)));
     assert_eq!(Scales::of(&[segment(0, 0.0)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
     for rows in 0..3 {
         assert_eq!(spectra(&[segment(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
     }
     let other = Segment { outputs: DMatrix::zeros(9, 2), ..segment(9, 1.0) };
-    assert_eq!(Scales::of(&[segment(9, 1.0), other]), Err(ScalingError::ChannelsDiffer { segment: 1 }));
+    assert_eq!(Scales::of(&[segment(9, 1.0), other]), Err(ScalingError::ChannelsDiffer(1)));
 }
 
 #[test]

@@ -94,7 +94,7 @@ fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
     let mut segment = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
     segment.outputs.column_mut(0).add_scalar_mut(1.0);
     let refused = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap_err();
-    assert!(matches!(refused, ValidationError::TooShort { window_s } if (window_s - 0.075).abs() < 1e-12));
+    assert!(matches!(refused, ValidationError::TooShort(window_s) if (window_s - 0.075).abs() < 1e-12));
     assert!(refused.to_string().contains("too short to compare in time"));
 }
 
@@ -181,7 +181,7 @@ fn hostile_models_and_records_are_refused() {
         (a[(1, 2)], a[(2, 1)]) = (value, -value);
         assert!(of(&with(a, 2)).is_err(), "{value}");
     }
-    assert_eq!(of(&with(good.a().clone(), 1)), Err(ValidationError::ChannelsDiffer { record: 3 }));
+    assert_eq!(of(&with(good.a().clone(), 1)), Err(ValidationError::ChannelsDiffer(3)));
 
     let mut broken = segment.clone();
     broken.outputs[(30, 0)] = f64::NAN;
@@ -191,9 +191,9 @@ fn hostile_models_and_records_are_refused() {
         outputs: segment.outputs.rows(0, 3).into(),
         ..segment.clone()
     };
-    assert!(matches!(validate(&good, &[short], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
+    assert!(matches!(validate(&good, &[short], &settings, &Sequential), Err(ValidationError::TooShort(_))));
     let empty = Segment { inputs: DMatrix::zeros(0, 2), outputs: DMatrix::zeros(0, 2), ..segment };
-    assert!(matches!(validate(&good, &[empty], &settings, &Sequential), Err(ValidationError::TooShort { .. })));
+    assert!(matches!(validate(&good, &[empty], &settings, &Sequential), Err(ValidationError::TooShort(_))));
 }
 
 proptest! {

@@ -8,7 +8,8 @@ use gdcm_core::correction::GainSource;
 use gdcm_core::study::{PhaseCorrection, setting};
 use gdcm_core::units::number;
 
-use super::palette::{TITLE_SIZE, medium};
+use super::controls::{elided, text_width};
+use super::palette::{TITLE_SIZE, body, medium, small};
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{
     Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch,
@@ -88,17 +89,15 @@ const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
-    let small = egui::FontId::proportional(SMALL_SIZE);
     let here = format!("condition {}", verdict.condition);
-    painted_text(ui, rect, COLUMNS[0], &here, small.clone(), palette.dim_text);
-    painted_text(ui, rect, -0.01, "all", small, palette.dim_text);
+    painted_text(ui, rect, COLUMNS[0], &here, small(), palette.dim_text);
+    painted_text(ui, rect, -0.01, "all", small(), palette.dim_text);
 }
 
 fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     named(response.clone(), Role::Label, row.sentence());
-    let body = egui::FontId::proportional(BODY_SIZE);
-    painted_text(ui, rect, 0.0, row.name, body.clone(), palette.dim_text);
+    painted_text(ui, rect, 0.0, row.name, body(), palette.dim_text);
     let is_missed = row.here.is_some_and(|[met, held]| met < held);
     let color = match (is_all_met, is_missed) {
         (true, _) => palette.good,
@@ -107,18 +106,14 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     };
     painted_text(ui, rect, COLUMNS[0], &VerdictRow::count(row.here), medium(TITLE_SIZE), color);
     let everywhere = VerdictRow::count(row.everywhere);
-    let all = painted_text(ui, rect, -0.01, &everywhere, body.clone(), palette.dim_text);
+    let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
     // Where there is no room for the band, the word alone: "matched".
-    let fits = text_width(ui, &row.words, BODY_SIZE) <= room;
+    let fits = text_width(ui, &row.words, body()) <= room;
     let words = if fits { row.words.as_str() } else { row.words.split(", ").next().unwrap_or_default() };
-    let words = super::controls::elided(ui, words, room, BODY_SIZE);
-    painted_text(ui, rect, COLUMNS[1], &words, body, palette.text);
+    let words = elided(ui, words, room, BODY_SIZE);
+    painted_text(ui, rect, COLUMNS[1], &words, body(), palette.text);
     response.on_hover_text(row.sentence());
-}
-
-fn text_width(ui: &Ui, text: &str, size: f32) -> f32 {
-    ui.painter().layout_no_wrap(text.to_owned(), egui::FontId::proportional(size), egui::Color32::PLACEHOLDER).size().x
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
@@ -160,11 +155,10 @@ fn line_ui(
     ui.horizontal(|ui| {
         ui.set_min_height(if primary.is_some() || caution.is_none() { 28.0 } else { 22.0 });
         if let Some(caution) = caution {
-            let width: f32 =
-                primary.into_iter().chain(links).map(|of| text_width(ui, &of.label, BODY_SIZE) + 24.0).sum();
+            let width: f32 = primary.into_iter().chain(links).map(|of| text_width(ui, &of.label, body()) + 24.0).sum();
             let room = ui.available_width() - width;
             let whole = format!("⚠ {caution}");
-            let fits = text_width(ui, &whole, BODY_SIZE) <= room;
+            let fits = text_width(ui, &whole, body()) <= room;
             let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
             let text = palette.small_warning(if fits { whole } else { short }).size(BODY_SIZE);
             ui.scope(|ui| {
@@ -173,20 +167,20 @@ fn line_ui(
             });
         }
         if let Some(step) = primary {
-            primary_ui(ui, step, palette, commands);
+            step_ui(ui, step, true, palette, commands);
         }
         let (at_end, links): (Vec<&Step>, Vec<&Step>) = links.iter().partition(|step| step.label.ends_with(" notes"));
         for step in links {
-            link_ui(ui, step, palette, commands);
+            step_ui(ui, step, false, palette, commands);
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             for step in at_end {
-                link_ui(ui, step, palette, commands);
+                step_ui(ui, step, false, palette, commands);
             }
             if !note.is_empty() {
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // Where there is no room for all of it: "of 19 models".
-                    let fits = text_width(ui, note, SMALL_SIZE) <= ui.available_width();
+                    let fits = text_width(ui, note, small()) <= ui.available_width();
                     let shown = if fits { note } else { note.split(", ").next().unwrap_or(note) };
                     ui.add(egui::Label::new(palette.small(shown)).truncate()).on_hover_text(note);
                 });
@@ -195,17 +189,15 @@ fn line_ui(
     });
 }
 
-/// The one primary button of the window; Enter on it does it.
-fn primary_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
-    let label = RichText::new(&step.label).font(medium(BODY_SIZE)).color(palette.on_accent());
-    let button = ui.add(Button::new(label).fill(palette.accent).min_size(vec2(0.0, 28.0)));
-    named(button, Role::Button, step.label.as_str()).asks(step.command.clone(), commands);
-}
-
-fn link_ui(ui: &mut Ui, step: &Step, palette: &Palette, commands: &mut Vec<Command>) {
-    let label = RichText::new(&step.label).color(palette.accent);
-    let button = ui.add(Button::new(label).frame(false).min_size(vec2(0.0, 28.0)));
-    named(button, Role::Button, step.label.as_str()).asks(step.command.clone(), commands);
+/// A step as a link, or as the one primary button of the window; Enter on it does it.
+fn step_ui(ui: &mut Ui, step: &Step, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
+    let label = RichText::new(&step.label);
+    let button = if is_primary {
+        Button::new(label.font(medium(BODY_SIZE)).color(palette.on_accent())).fill(palette.accent)
+    } else {
+        Button::new(label.color(palette.accent)).frame(false)
+    };
+    ui.add(button.min_size(vec2(0.0, 28.0))).asks(step.command.clone(), commands);
 }
 
 /// The settings in one line; a click opens them in place, over matrix and card.
@@ -219,9 +211,8 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     let inner = rect.shrink2(vec2(PADDING, 0.0));
     let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
     let words = settings_words(state);
-    let shown = super::controls::elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
-    let small = egui::FontId::proportional(SMALL_SIZE);
-    painted_text(ui, inner, title.right() - inner.left() + 10.0, &shown, small, palette.dim_text);
+    let shown = elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
+    painted_text(ui, inner, title.right() - inner.left() + 10.0, &shown, small(), palette.dim_text);
     chevron(ui, pos2(inner.right() - 5.0, inner.center().y), is_open, palette);
     let response = named_switch(response, Role::Button, is_open, "Settings");
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
@@ -269,17 +260,13 @@ fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, c
     region_ui(ui, Region::Export, |ui| {
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
             let export_button = ui.add_enabled(is_ready, button.min_size(place.size()));
-            if export_button
-                .on_hover_text("Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)")
-                .clicked()
-            {
-                commands.push(export());
-            }
+            let hint = "Write corrections.json, corrections.csv and assessment.csv (Ctrl+E)";
+            export_button.on_hover_text(hint).asks(export(), commands);
         });
     });
     let schedule = state.analysis().is_some_and(|analysis| analysis.schedule.is_ok());
     let count = state.dataset().conditions().len();
     let conditions = if count == 1 { "condition" } else { "conditions" };
     let what = format!("{count} {conditions}{}", if schedule { ", schedule" } else { "" });
-    painted_text(ui, inner, -0.01, &what, egui::FontId::proportional(BODY_SIZE), palette.dim_text);
+    painted_text(ui, inner, -0.01, &what, body(), palette.dim_text);
 }

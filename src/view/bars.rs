@@ -1,15 +1,15 @@
 //! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
 
 use egui::{
-    Align, Button, CollapsingHeader, FontId, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar, Modifiers,
-    Rect, RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, UiBuilder, pos2, vec2,
+    Align, Button, CollapsingHeader, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar, Modifiers, Rect,
+    RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, pos2, vec2,
 };
 
 use gdcm_core::dataset::{BundleKind, Condition};
 
 use super::command_table::command_table;
-use super::controls::elided;
-use super::palette::medium;
+use super::controls::{elided, in_line_ui, text_width};
+use super::palette::{body, medium, small};
 use super::records::RecordsState;
 use super::{
     Asks, BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile, SMALL_SIZE, State,
@@ -19,17 +19,15 @@ use super::{
 /// Menus, the last step, the state of the document, and the way to every command.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = ui.available_rect_before_wrap();
-    let layout = Layout::left_to_right(Align::Center);
-    let left = ui.scope_builder(UiBuilder::new().max_rect(bar).layout(layout), |ui| {
+    let left = in_line_ui(ui, bar, false, |ui| {
         let shown = MenuBar::new().ui(ui, |ui| {
             ui.label(RichText::new("gdcm").font(medium(BODY_SIZE)));
             ui.add_space(4.0);
-            ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands))
-                .response
-                .asks(Command::LookForRecent, commands);
-            ui.menu_button("Edit", |ui| menu_ui(ui, state, Menu::Edit, commands));
-            ui.menu_button("View", |ui| menu_ui(ui, state, Menu::View, commands));
-            ui.menu_button("Help", |ui| menu_ui(ui, state, Menu::Help, commands));
+            let file = ui.menu_button("File", |ui| menu_ui(ui, state, Menu::File, commands));
+            file.response.asks(Command::LookForRecent, commands);
+            for (name, menu) in [("Edit", Menu::Edit), ("View", Menu::View), ("Help", Menu::Help)] {
+                ui.menu_button(name, |ui| menu_ui(ui, state, menu, commands));
+            }
             ui.separator();
             history_ui(ui, state, commands);
             ui.cursor().left()
@@ -37,8 +35,7 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
         shown.inner
     });
     let rest = bar.with_min_x(left.inner + 8.0);
-    let layout = Layout::right_to_left(Align::Center);
-    let right = ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| {
+    let right = in_line_ui(ui, rest, true, |ui| {
         theme_ui(ui, commands);
         search_ui(ui, palette, commands)
     });
@@ -53,10 +50,10 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     let line = if response.hovered() { palette.dim_text } else { palette.line };
     ui.painter().rect(rect, 6.0, palette.background, Stroke::new(1.0, line), StrokeKind::Inside);
     let inner = rect.shrink2(vec2(9.0, 0.0));
-    painted_text(ui, inner, 0.0, "Find a command", FontId::proportional(BODY_SIZE), palette.dim_text);
+    painted_text(ui, inner, 0.0, "Find a command", body(), palette.dim_text);
     let keys = KeyboardShortcut::new(Modifiers::COMMAND, Key::K);
     let keys = ui.ctx().format_shortcut(&keys);
-    painted_text(ui, inner, -0.01, &keys, FontId::proportional(SMALL_SIZE), palette.dim_text);
+    painted_text(ui, inner, -0.01, &keys, small(), palette.dim_text);
     named(response, Role::Button, "Find a command").asks(Command::ShowForm(Some(FormKind::Palette)), commands);
     rect.left()
 }
@@ -104,24 +101,14 @@ fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// A button of the bar, which has no frame.
-fn bar_button_ui(
-    ui: &mut Ui,
-    (text, hint): (String, &str),
-    is_enabled: bool,
-    command: Command,
-    commands: &mut Vec<Command>,
-) {
-    ui.add_enabled_ui(is_enabled, |ui| button_ui(ui, Button::new(text).frame(false), hint, command, commands));
-}
-
 fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (verb, label, hint, command) in [
         ("↶ Undo", state.history.undo_label(), "Take the last decision back (Ctrl+Z)", Command::Undo),
         ("↷ Redo", state.history.redo_label(), "Bring it back again (Ctrl+Shift+Z)", Command::Redo),
     ] {
         let text = label.map_or(verb.to_owned(), |label| format!("{verb} {label}"));
-        bar_button_ui(ui, (text, hint), label.is_some(), command, commands);
+        let button = Button::new(text).frame(false);
+        ui.add_enabled_ui(label.is_some(), |ui| button_ui(ui, button, hint, command, commands));
     }
 }
 
@@ -137,22 +124,17 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Dataset and study, in the middle of the bar where there is room for that.
 fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette) {
-    let strong = medium(BODY_SIZE);
-    let plain = FontId::proportional(BODY_SIZE);
     let study = format!("{}{}", state.study_name, if state.unsaved { " · edited" } else { "" });
-    let width = |text: &str, font: &FontId| {
-        ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font.clone(), palette.text).size().x)
-    };
-    let of_study = width(&study, &plain);
+    let of_study = text_width(ui, &study, body());
     let name = elided(ui, state.dataset().name(), room.width() - of_study - 8.0, BODY_SIZE);
-    let whole = width(&name, &strong) + 8.0 + of_study;
+    let whole = text_width(ui, &name, medium(BODY_SIZE)) + 8.0 + of_study;
     let left = (bar.center().x - 0.5 * whole).min(room.right() - whole).max(room.left());
     if whole > room.width() {
         return;
     }
     let place = Rect::from_min_size(pos2(left, bar.top()), vec2(whole, bar.height()));
-    painted_text(ui, place, 0.0, &name, strong, palette.text);
-    painted_text(ui, place, -0.01, &study, plain, palette.dim_text);
+    painted_text(ui, place, 0.0, &name, medium(BODY_SIZE), palette.text);
+    painted_text(ui, place, -0.01, &study, body(), palette.dim_text);
     let response = ui.interact(place, ui.scope_id().with("document"), Sense::hover());
     let is_saved = if state.unsaved { "There are decisions that are not saved" } else { "Every decision is saved" };
     let response = named(response, Role::Label, format!("{}, {study}", state.dataset().name()));
@@ -334,26 +316,24 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
             _ => format!("identifying, {percent} % …"),
         };
     }
-    match (background.proofs.len(), background.curves) {
-        (1, _) => "proving the gains of 1 condition …".to_owned(),
-        (2.., _) => format!("proving the gains of {} conditions …", background.proofs.len()),
-        (0, Some((done, total))) if total > 0 => format!("curves, {} % …", 100 * done / total),
-        (0, Some(_)) => "curves …".to_owned(),
-        (0, None) if background.bars.is_some() => bar_words(background.bars.unwrap_or_default()),
-        (0, None) if background.time_histories.is_some() => {
-            let (done, total) = background.time_histories.unwrap_or_default();
-            format!("answers to flight records, {} % …", 100 * done / total.max(1))
-        }
-        (0, None) if background.views > 0 => "what the views show …".to_owned(),
-        (0, None) => "what holding and releasing would cost …".to_owned(),
+    if !background.proofs.is_empty() {
+        return format!("proving the gains of {} …", counted(background.proofs.len(), "condition"));
+    }
+    match (background.curves, background.bars, background.time_histories) {
+        (Some((_, 0)), ..) => "curves …".to_owned(),
+        (Some((done, total)), ..) => format!("curves, {} % …", 100 * done / total),
+        (None, Some(progress), _) => bar_words(progress),
+        (None, None, Some((done, total))) => format!("answers to flight records, {} % …", 100 * done / total.max(1)),
+        _ if background.views > 0 => "what the views show …".to_owned(),
+        _ => "what holding and releasing would cost …".to_owned(),
     }
 }
 
 /// Why the condition shown is left out of the assessment, or what the data are.
 fn standing_remark(state: &State) -> String {
-    let assessed = state.analysis().and_then(|analysis| analysis.assessment.get(&state.condition().id()));
-    match assessed.and_then(|assessed| assessed.as_ref().err()) {
-        Some(why) => format!("condition {} is left out of the assessment: {why}", state.condition().id()),
-        None => state.condition().flight_state().name.clone(),
+    let id = state.condition().id();
+    match state.analysis().and_then(|analysis| analysis.assessment.get(&id)) {
+        Some(Err(why)) => format!("condition {id} is left out of the assessment: {why}"),
+        _ => state.condition().flight_state().name.clone(),
     }
 }

@@ -2,16 +2,17 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{
-    Align, Button, FontId, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui,
+    Align, AsIdSalt, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui,
     UiBuilder, pos2, vec2,
 };
 
 use super::answer_panel::chevron;
-use super::palette::{TITLE_SIZE, medium};
+use super::controls::{in_line_ui, text_width};
+use super::palette::{TITLE_SIZE, body, medium};
 use super::start_page::example_line_ui;
 use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, entries_ui, figure_button_ui, named,
-    named_switch, region_ui, restore_panel_size,
+    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, button_ui, entries_ui,
+    figure_button_ui, named, named_switch, region_ui, restore_panel_size,
 };
 
 /// Height of the bar of the views \[pt\].
@@ -55,18 +56,16 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     ui.painter().rect_filled(bar, 0.0, palette.panel);
     ui.painter().hline(bar.x_range(), bar.bottom(), Stroke::new(1.0, palette.line));
     let inner = bar.shrink2(vec2(f32::from(PADDING), 0.0));
-    let left = ui.scope_builder(UiBuilder::new().max_rect(inner).layout(Layout::left_to_right(Align::Center)), |ui| {
+    let left = in_line_ui(ui, inner, false, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         groups_ui(ui, state, palette, commands);
         ui.add_space(12.0);
         tabs_ui(ui, state, bar, palette, commands);
     });
-    let rest = inner.with_min_x(left.response.rect.right() + 8.0);
-    ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::right_to_left(Align::Center)), |ui| {
-        let view = state.display.arrangement.view();
-        figure_button_ui(ui, state, view, commands);
-        let fit = named(ui.add(Button::new("Fit").frame(false)), Role::Button, "Fit");
-        fit.on_hover_text("Bring every curve into view (F, or double click)").asks(Command::FitPlots, commands);
+    in_line_ui(ui, inner.with_min_x(left.response.rect.right() + 8.0), true, |ui| {
+        figure_button_ui(ui, state, state.display.arrangement.view(), commands);
+        let hint = "Bring every curve into view (F, or double click)";
+        button_ui(ui, Button::new("Fit").frame(false), hint, Command::FitPlots, commands);
         beside_ui(ui, state, palette, commands);
     });
 }
@@ -74,10 +73,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
 /// One button of several joined ones for each group.
 fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let font = medium(BODY_SIZE);
-    let width = |ui: &Ui, name: &str| {
-        ui.fonts_mut(|fonts| fonts.layout_no_wrap(name.to_owned(), font.clone(), palette.text).size().x) + 24.0
-    };
-    let widths = ViewGroup::ALL.map(|group| width(ui, group.name()));
+    let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
     let (area, _) = ui.allocate_exact_size(vec2(widths.iter().sum::<f32>() + 4.0, 30.0), Sense::hover());
     ui.painter().rect(area, 6.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
     let mut left = area.left() + 2.0;
@@ -102,10 +98,7 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
     /// What else stands in the bar \[pt\].
     const TOOLS: f32 = 130.0;
     let arrangement = &state.display.arrangement;
-    let width = |view: View| {
-        ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), medium(BODY_SIZE), palette.text).size().x)
-            + 16.0
-    };
+    let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
     let room = bar.right() - ui.cursor().left() - TOOLS;
     if arrangement.group().views().map(width).sum::<f32>() <= room {
         for view in arrangement.group().views() {
@@ -124,7 +117,7 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
 
 /// The name of a view, with a line of accent below the one in front.
 fn tab_ui(ui: &mut Ui, bar: Rect, view: View, is_front: bool, palette: &Palette, commands: &mut Vec<Command>) {
-    let font = if is_front { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
+    let font = if is_front { medium(BODY_SIZE) } else { body() };
     let color = if is_front { palette.text } else { palette.dim_text };
     let galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), font, color));
     let (place, response) = ui.allocate_exact_size(vec2(galley.size().x + 14.0, BAR), Sense::click());
@@ -162,14 +155,18 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
 /// A view with its title and its tools in an area.
 fn part_ui(ui: &mut Ui, area: Rect, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
     let top = if state.is_example { 0 } else { 6 };
-    let margin = Margin { left: PADDING, right: PADDING, top, bottom: 4 };
-    ui.scope_builder(UiBuilder::new().id_salt(("view", view)).max_rect(area), |ui| {
+    clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
+        title_row_ui(ui, state, view, palette, commands);
+        let draw = view.kind().draw;
+        region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
+    });
+}
+
+/// Content that stays within an area, with space around it, above and below as given.
+fn clipped_ui(ui: &mut Ui, id: impl AsIdSalt, area: Rect, [top, bottom]: [i8; 2], add: impl FnOnce(&mut Ui)) {
+    ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(area), |ui| {
         ui.set_clip_rect(area.intersect(ui.clip_rect()));
-        Frame::new().inner_margin(margin).show(ui, |ui| {
-            title_row_ui(ui, state, view, palette, commands);
-            let draw = view.kind().draw;
-            region_ui(ui, Region::Plots, |ui| draw(ui, state, palette, commands));
-        });
+        Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top, bottom }).show(ui, add);
     });
     ui.advance_cursor_after_rect(area);
 }
@@ -188,10 +185,7 @@ fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, comma
         row_ui(ui, width, |ui| {
             tools_ui(ui, state, view, palette, commands);
             let rest = ui.available_rect_before_wrap();
-            let layout = Layout::left_to_right(Align::Center);
-            ui.scope_builder(UiBuilder::new().max_rect(rest).layout(layout), |ui| {
-                title_ui(ui, state, kind.title, palette)
-            });
+            in_line_ui(ui, rest, false, |ui| title_ui(ui, state, kind.title, palette));
         });
     }
 }
@@ -249,17 +243,13 @@ fn dock_ui(ui: &mut Ui, state: &mut State, view: View, palette: &Palette, comman
     };
     panel.show(ui, |ui| {
         let area = ui.available_rect_before_wrap();
-        ui.scope_builder(UiBuilder::new().id_salt("dock content").max_rect(area), |ui| {
-            ui.set_clip_rect(area.intersect(ui.clip_rect()));
-            Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 0, bottom: 2 }).show(ui, |ui| {
-                dock_head_ui(ui, state, (view, is_open), palette, commands);
-                if is_open {
-                    let draw = view.kind().draw;
-                    region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
-                }
-            });
+        clipped_ui(ui, "dock content", area, [0, 2], |ui| {
+            dock_head_ui(ui, state, (view, is_open), palette, commands);
+            if is_open {
+                let draw = view.kind().draw;
+                region_ui(ui, Region::Dock, |ui| draw(ui, state, palette, commands));
+            }
         });
-        ui.advance_cursor_after_rect(area);
     });
 }
 
@@ -278,7 +268,7 @@ fn dock_head_ui(
             tools_ui(ui, state, view, palette, commands);
         }
         let rest = ui.available_rect_before_wrap();
-        ui.scope_builder(UiBuilder::new().max_rect(rest).layout(Layout::left_to_right(Align::Center)), |ui| {
+        in_line_ui(ui, rest, false, |ui| {
             let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
             chevron(ui, place.center(), is_open, palette);
             let response = named_switch(response, Role::Button, is_open, "Dock");

@@ -1,6 +1,6 @@
 //! The list of flight conditions with the map of what the correction leaves in each; wide, or as a rail.
 
-use egui::{Color32, CornerRadius, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
+use egui::{Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
 use gdcm_core::correction::Unmatched;
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, Pair};
@@ -9,7 +9,7 @@ use gdcm_core::study::Edit;
 use gdcm_files::figure::{Classes, decimals};
 
 use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
-use super::palette::{HEAT_COSTS, medium};
+use super::palette::{HEAT_COSTS, body, medium, small};
 use super::{
     Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui, named, painted_text,
     region_ui, row_of_height_ui, table_heading_ui, table_menu_ui,
@@ -30,7 +30,7 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
         let older = if state.others_are_older() { " · of older settings" } else { "" };
         let count = format!("{}{older}", state.dataset().conditions().len());
         table_heading_ui(ui, palette, ("Conditions", &count), TableKind::Conditions, commands);
-        let map = Map::of(state, ui.available_width());
+        let map = Map::of(state, MAP[0], ui.available_width() - MAP[0] - 16.0);
         map.heads_ui(ui, palette, commands);
         for condition in state.dataset().conditions() {
             map.row_ui(ui, condition, palette, commands);
@@ -47,7 +47,7 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         let (head, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
         for (right, words) in [(20.0, "no."), (50.0, "kt"), (64.0, "J")] {
             let upto = head.with_max_x(head.left() + right);
-            painted_text(ui, upto, -0.01, words, FontId::proportional(SMALL_SIZE), palette.dim_text);
+            painted_text(ui, upto, -0.01, words, small(), palette.dim_text);
         }
         table_menu_ui(ui, &heading, TableKind::Conditions, commands);
         let map = Map::rail(state);
@@ -99,11 +99,10 @@ fn bundle_button_ui(
     let line = |row: usize, size: f32| {
         Rect::from_min_size(rect.min + vec2(4.0, 4.0 + 17.0 * row as f32), vec2(rect.width(), size))
     };
-    let small = FontId::proportional(SMALL_SIZE);
     painted_text(ui, line(0, 17.0), 0.0, name, medium(BODY_SIZE), palette.text);
-    painted_text(ui, line(1, 17.0), 0.0, kept, small.clone(), palette.dim_text);
+    painted_text(ui, line(1, 17.0), 0.0, kept, small(), palette.dim_text);
     if open > 0 {
-        painted_text(ui, line(2, 17.0), 0.0, &format!("{open} suggested"), small, palette.warning);
+        painted_text(ui, line(2, 17.0), 0.0, &format!("{open} suggested"), small(), palette.warning);
     }
     let response = named(response, Role::Button, format!("Open the list: {name}"));
     if response.on_hover_text(format!("{name}: {kept} kept")).clicked() {
@@ -113,14 +112,9 @@ fn bundle_button_ui(
 
 /// "60 kt, low altitude, high weight".
 fn in_words(state: &FlightState) -> String {
-    let mut words = format!("{} kt", state.airspeed_kt);
-    if let Some(altitude) = &state.altitude {
-        words.push_str(&format!(", {altitude} altitude"));
-    }
-    if let Some(weight) = &state.weight {
-        words.push_str(&format!(", {weight} weight"));
-    }
-    words
+    let altitude = state.altitude.as_ref().map_or(String::new(), |altitude| format!(", {altitude} altitude"));
+    let weight = state.weight.as_ref().map_or(String::new(), |weight| format!(", {weight} weight"));
+    format!("{} kt{altitude}{weight}", state.airspeed_kt)
 }
 
 /// The list of one frame: what its columns are, and where they are.
@@ -128,35 +122,58 @@ struct Map<'a> {
     state: &'a State,
     classes: Classes,
     columns: Vec<CostColumn>,
+    /// Where the columns begin \[pt from the row's left edge\], and how far they are apart.
+    left: f32,
     pitch: f32,
     is_rail: bool,
 }
 
 impl<'a> Map<'a> {
-    fn of(state: &'a State, width: f32) -> Self {
+    /// In a row that has so much room for the columns, from `left` on.
+    fn of(state: &'a State, left: f32, room: f32) -> Self {
         let columns = columns(state);
-        let pitch = ((width - MAP[0] - 16.0) / columns.len().max(1) as f32).min(MAP[1]);
-        Self { state, classes: Classes::of(state.dataset()), columns, pitch, is_rail: false }
+        let pitch = (room / columns.len().max(1) as f32).min(MAP[1]);
+        Self { state, classes: Classes::of(state.dataset()), columns, left, pitch, is_rail: false }
     }
 
     fn rail(state: &'a State) -> Self {
         let pairs = state.study.settings.constrained.marked().collect();
         let columns = vec![CostColumn { head: "J".to_owned(), pairs, is_mean: false }];
-        Self { state, classes: Classes::of(state.dataset()), columns, pitch: MAP[1], is_rail: true }
+        Self { columns, left: 60.0, pitch: MAP[1], is_rail: true, ..Self::of(state, 0.0, 0.0) }
+    }
+
+    /// The middle of a column.
+    fn center(&self, row: Rect, place: usize) -> f32 {
+        row.left() + self.left + self.pitch * place as f32 + HALF_CELL[0]
+    }
+
+    /// The dot of a condition, as it is in Net gain.
+    fn paint_mark(&self, ui: &Ui, at: Pos2, flight_state: &FlightState, palette: &Palette) {
+        let is_filled = self.classes.is_first_weight(flight_state);
+        let (fill, stroke) = match is_filled {
+            true => (palette.perturbed, Stroke::NONE),
+            false => (Color32::TRANSPARENT, Stroke::new(1.6, palette.perturbed)),
+        };
+        if self.classes.is_first_altitude(flight_state) {
+            ui.painter().circle(at, if is_filled { 4.2 } else { 3.5 }, fill, stroke);
+        } else {
+            let reach = if is_filled { 5.2 } else { 4.4 };
+            let corners = [vec2(0.0, -reach), vec2(reach, 0.0), vec2(0.0, reach), vec2(-reach, 0.0)].map(|by| at + by);
+            ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), fill, stroke));
+        }
     }
 
     fn heads_ui(&self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
         let (row, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::CLICK);
-        let small = FontId::proportional(SMALL_SIZE);
         for (end, words) in [(PLACES[0], "no."), (PLACES[2], "kt")] {
-            painted_text(ui, row.with_max_x(row.left() + end), -0.01, words, small.clone(), palette.dim_text);
+            painted_text(ui, row.with_max_x(row.left() + end), -0.01, words, small(), palette.dim_text);
         }
         for (place, column) in self.columns.iter().enumerate() {
             let is_of_focus = column.pairs.contains(&self.state.display.pair);
             let color = if is_of_focus { palette.text } else { palette.dim_text };
-            let font = if is_of_focus { medium(SMALL_SIZE) } else { small.clone() };
-            let center = row.left() + MAP[0] + self.pitch * place as f32 + HALF_CELL[0];
-            ui.painter().text(pos2(center, row.center().y), egui::Align2::CENTER_CENTER, &column.head, font, color);
+            let font = if is_of_focus { medium(SMALL_SIZE) } else { small() };
+            let at = pos2(self.center(row, place), row.center().y);
+            ui.painter().text(at, Align2::CENTER_CENTER, &column.head, font, color);
         }
         let heading = named(heading, Role::Label, "Heading of the map of costs");
         heading.context_menu(|ui| {
@@ -179,14 +196,11 @@ impl<'a> Map<'a> {
         }
         let color = if marks.left_out { palette.quiet_text } else { palette.text };
         let places = if self.is_rail { [20.0, 0.0, 50.0] } else { PLACES };
-        let body = FontId::proportional(BODY_SIZE);
         let at = |right: f32| row.with_max_x(row.left() + right);
         painted_text(ui, at(places[0]), -0.01, &id.to_string(), medium(BODY_SIZE), color);
-        painted_text(ui, at(places[2]), -0.01, &flight_state.airspeed_kt.to_string(), body, color);
+        painted_text(ui, at(places[2]), -0.01, &flight_state.airspeed_kt.to_string(), body(), color);
         if !self.is_rail {
-            let is_round = self.classes.is_first_altitude(flight_state);
-            let is_filled = self.classes.is_first_weight(flight_state);
-            paint_mark(ui, pos2(row.left() + places[1], row.center().y), (is_round, is_filled), palette);
+            self.paint_mark(ui, pos2(row.left() + places[1], row.center().y), flight_state, palette);
         }
         self.cells_ui(ui, row, (id, &marks), palette, commands);
         marks.paint(ui, row, palette);
@@ -204,10 +218,9 @@ impl<'a> Map<'a> {
         palette: &Palette,
         commands: &mut Vec<Command>,
     ) {
-        let left = if self.is_rail { 60.0 } else { MAP[0] };
         for (place, column) in self.columns.iter().enumerate() {
             let Some((pair, cost)) = cost_of_column(self.state, id, column) else { continue };
-            let corner = pos2(row.left() + left + self.pitch * place as f32, row.center().y - 0.5 * HALF_CELL[1]);
+            let corner = pos2(self.center(row, place) - HALF_CELL[0], row.center().y - 0.5 * HALF_CELL[1]);
             let width = HALF_CELL[0].min(0.5 * self.pitch - 1.5);
             let cell = Rect::from_min_size(corner, vec2(2.0 * width + 1.0, HALF_CELL[1]));
             paint_cost(ui, cell, cost, palette);
@@ -229,14 +242,13 @@ impl<'a> Map<'a> {
     fn key_ui(&self, ui: &mut Ui, palette: &Palette) {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
         let lines = [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
-        let small = FontId::proportional(SMALL_SIZE);
         let of = match self.state.display.mapped_cost {
             MappedCost::Before => "J before, held responses",
             MappedCost::Own => "J of the held responses",
             MappedCost::Scheduled => "J under the schedule",
         };
-        painted_text(ui, lines[0], 0.0, of, small.clone(), palette.dim_text);
-        painted_text(ui, lines[1], 0.0, "left magnitude, right phase", small.clone(), palette.dim_text);
+        painted_text(ui, lines[0], 0.0, of, small(), palette.dim_text);
+        painted_text(ui, lines[1], 0.0, "left magnitude, right phase", small(), palette.dim_text);
         let bar = Rect::from_min_max(
             pos2(rect.right() - 76.0, rect.top() + 5.0),
             pos2(rect.right() - 4.0, rect.top() + 11.0),
@@ -255,7 +267,7 @@ impl<'a> Map<'a> {
         ui.painter().add(mesh);
         for cost in [0.0, 50.0, 100.0] {
             let place = pos2(at(cost), lines[1].center().y);
-            ui.painter().text(place, egui::Align2::CENTER_CENTER, cost.to_string(), small.clone(), palette.dim_text);
+            ui.painter().text(place, Align2::CENTER_CENTER, cost.to_string(), small(), palette.dim_text);
         }
     }
 }
@@ -263,28 +275,21 @@ impl<'a> Map<'a> {
 /// The list as a picture: marks, airspeeds and costs, without anything to click.
 pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     const ROW: f32 = 17.0;
-    let columns = columns(state);
-    let pitch = ((area.width() - 48.0) / columns.len().max(1) as f32).min(MAP[1]);
-    let classes = Classes::of(state.dataset());
-    let small = FontId::proportional(SMALL_SIZE);
-    let center = |place: usize| area.left() + 48.0 + pitch * place as f32 + HALF_CELL[0];
-    for (place, column) in columns.iter().enumerate() {
-        let at = pos2(center(place), area.top() + 8.0);
-        ui.painter().text(at, egui::Align2::CENTER_CENTER, &column.head, small.clone(), palette.dim_text);
+    let map = Map::of(state, 48.0, area.width() - 48.0);
+    for (place, column) in map.columns.iter().enumerate() {
+        let at = pos2(map.center(area, place), area.top() + 8.0);
+        ui.painter().text(at, Align2::CENTER_CENTER, &column.head, small(), palette.dim_text);
     }
     for (number, condition) in state.dataset().conditions().iter().take(12).enumerate() {
         let row = Rect::from_min_size(area.min + vec2(0.0, 18.0 + ROW * number as f32), vec2(area.width(), ROW));
         let flight_state = condition.flight_state();
-        let shape = (classes.is_first_altitude(flight_state), classes.is_first_weight(flight_state));
-        paint_mark(ui, pos2(row.left() + 6.0, row.center().y), shape, palette);
+        map.paint_mark(ui, pos2(row.left() + 6.0, row.center().y), flight_state, palette);
         let airspeed = flight_state.airspeed_kt.to_string();
-        painted_text(ui, row.with_max_x(row.left() + 40.0), -0.01, &airspeed, small.clone(), palette.dim_text);
-        for (place, column) in columns.iter().enumerate() {
+        painted_text(ui, row.with_max_x(row.left() + 40.0), -0.01, &airspeed, small(), palette.dim_text);
+        for (place, column) in map.columns.iter().enumerate() {
             let Some((_, cost)) = cost_of_column(state, condition.id(), column) else { continue };
-            let cell = Rect::from_center_size(
-                pos2(center(place), row.center().y),
-                vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]),
-            );
+            let at = pos2(map.center(row, place), row.center().y);
+            let cell = Rect::from_center_size(at, vec2(2.0 * HALF_CELL[0] + 1.0, HALF_CELL[1]));
             paint_cost(ui, cell, cost, palette);
         }
     }
@@ -311,20 +316,7 @@ fn cost_words(state: &State, condition: ConditionId, (column, worst): (&CostColu
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
 }
 
-/// The dot of a condition, as it is in Net gain.
-fn paint_mark(ui: &Ui, at: egui::Pos2, (is_round, is_filled): (bool, bool), palette: &Palette) {
-    let (fill, stroke) = match is_filled {
-        true => (palette.perturbed, Stroke::NONE),
-        false => (Color32::TRANSPARENT, Stroke::new(1.6, palette.perturbed)),
-    };
-    if is_round {
-        ui.painter().circle(at, if is_filled { 4.2 } else { 3.5 }, fill, stroke);
-    } else {
-        let reach = if is_filled { 5.2 } else { 4.4 };
-        let corners = [vec2(0.0, -reach), vec2(reach, 0.0), vec2(0.0, reach), vec2(-reach, 0.0)].map(|by| at + by);
-        ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), fill, stroke));
-    }
-}
+/// What a right-click on a condition offers.
 fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Vec<Command>) {
     let hold_out = if marks.held_out { "No longer hold out" } else { "Hold out, to judge the schedule" };
     let schedule = if marks.left_out { "Include in the schedule" } else { "Leave out of the schedule" };
@@ -336,6 +328,7 @@ fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Ve
 }
 
 /// What the list says about a condition: what is still to do there.
+#[derive(Default)]
 struct Marks {
     /// Models that are suggested as outliers and not rejected.
     suggested: usize,
@@ -351,14 +344,7 @@ struct Marks {
 impl Marks {
     fn of(state: &State, condition: ConditionId) -> Self {
         let choice = state.study.choice(condition);
-        let mut marks = Self {
-            suggested: 0,
-            unmatched_gains: 0,
-            unmatched_delays: 0,
-            left_out: !choice.scheduled,
-            held_out: choice.held_out,
-            failure: None,
-        };
+        let mut marks = Self { left_out: !choice.scheduled, held_out: choice.held_out, ..Self::default() };
         match state.analysis().and_then(|analysis| analysis.conditions.get(&condition)) {
             None => {}
             Some(Err(failure)) => marks.failure = Some(failure.to_string()),
@@ -384,7 +370,7 @@ impl Marks {
     /// ⚠ where something is still to be decided; a stroke through a condition that is left out, an accent on one that is held out.
     fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
         if self.failure.is_some() || self.suggested + self.unmatched_gains + self.unmatched_delays > 0 {
-            painted_text(ui, row, -4.0, "⚠", FontId::proportional(SMALL_SIZE), palette.warning);
+            painted_text(ui, row, -4.0, "⚠", small(), palette.warning);
         }
         if self.held_out {
             ui.painter().vline(row.left() + 1.0, row.shrink(3.0).y_range(), Stroke::new(2.0, palette.accent));

@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 
 use egui::containers::panel::PanelState;
 use egui::{
-    Align, Align2, Button, Color32, Context, DragValue, FontId, Id, Key, Layout, Rect, Response, RichText, Role, Sense,
-    TextEdit, Ui, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Id, InnerResponse, Key, Layout, Rect,
+    Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_core::study::Digits;
@@ -199,11 +199,8 @@ pub fn elided_among(ui: &Ui, text: &str, neighbours: [Option<&str>; 2], room: f3
 }
 
 fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
-    let width = |text: String| {
-        let font = FontId::proportional(size);
-        ui.fonts_mut(|fonts| fonts.layout_no_wrap(text, font, Color32::PLACEHOLDER).size().x)
-    };
-    if width(text.to_owned()) <= room {
+    let width = |text: &str| text_width(ui, text, FontId::proportional(size));
+    if width(text) <= room {
         return text.to_owned();
     }
     let letters: Vec<char> = text.chars().collect();
@@ -216,13 +213,41 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     let (mut fits, mut too_wide) = (0, letters.len());
     while too_wide - fits > 1 {
         let middle = (fits + too_wide) / 2;
-        if width(keeping(middle)) <= room {
+        if width(&keeping(middle)) <= room {
             fits = middle;
         } else {
             too_wide = middle;
         }
     }
     if fits == 0 { String::new() } else { keeping(fits) }
+}
+
+/// How wide a text is in one line \[pt\].
+pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
+    ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x)
+}
+
+/// What is added stands in `place`, from left to right or from right to left, each centred in height.
+pub fn in_line_ui<R>(ui: &mut Ui, place: Rect, from_right: bool, add: impl FnOnce(&mut Ui) -> R) -> InnerResponse<R> {
+    let layout = if from_right { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
+    ui.scope_builder(UiBuilder::new().max_rect(place).layout(layout), add)
+}
+
+/// A drop-down list of this accessible name that shows `text`; what was chosen in it.
+pub fn list_ui<T: Copy>(
+    ui: &mut Ui,
+    name: &str,
+    (width, text): (f32, &str),
+    choices: impl IntoIterator<Item = (T, bool, String)>,
+) -> Option<T> {
+    let shown = ComboBox::from_id_salt(name).width(width).selected_text(text).show_ui(ui, |ui| {
+        let clicked = |(choice, is_chosen, text): (T, bool, String)| {
+            ui.selectable_label(is_chosen, text).clicked().then_some(choice)
+        };
+        choices.into_iter().filter_map(clicked).last()
+    });
+    named(shown.response, Role::ComboBox, name);
+    shown.inner.flatten()
 }
 
 /// Paints text of a font at `x` points from the row's left edge (before its right edge where negative), centred in height.

@@ -4,20 +4,20 @@
 use std::collections::BTreeSet;
 
 use egui::{
-    Align, Area, CollapsingHeader, CursorIcon, Frame, Grid, Id, Label, Layout, Margin, Order, Rect, Response, RichText,
-    Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
+    Align, Area, Button, CollapsingHeader, CursorIcon, Frame, Grid, Id, Label, Layout, Margin, Order, Rect, Response,
+    RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
 };
 
 use gdcm_core::correction::{Channel, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
-    ConditionAnalysis, Derivation, Edit, ExplainTarget, PhaseCorrection, Remark, RemarkKind, SignRole, derivation,
-    details, lead_words, no_couplings, remarks, setting,
+    ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, RemarkKind, SignRole, derivation, details, lead_words,
+    no_couplings, remarks, setting,
 };
 
 use super::palette::{TITLE_SIZE, medium};
 use super::views::{offered_couplings, used_couplings};
-use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, entries_ui, named, take_escape};
+use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, button_ui, entries_ui, named, take_escape};
 
 /// What a sheet may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -214,9 +214,7 @@ pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeS
 
 /// What holding or freeing a response would cost, in words; nothing until the table of all toggles of this very result is computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
-    let Some(toggles) = state.toggles() else {
-        return Vec::new();
-    };
+    let Some(toggles) = state.toggles() else { return Vec::new() };
     let (inputs, outputs) = state.dataset().names_of_channels();
     let (gain, delay) = toggles.of_pair(pair);
     let gain = gain.map(|toggle| format!("Gains: {}", toggle.words(&inputs, &outputs)));
@@ -309,16 +307,24 @@ fn remarks_ui(ui: &mut Ui, state: &State, remarks: &[Remark], palette: &Palette,
     for remark in remarks {
         remark_ui(ui, palette, remark);
         if let Some(pair) = remark.ignore {
-            ignore_ui(ui, state, pair, commands);
+            let name = state.dataset().pair_name(pair);
+            let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));
+            let hint = format!("Give {name} no weight in the objective, in every condition");
+            button.on_hover_text(hint).asks(Edit::Fit(pair, false), commands);
         }
         if let Some((channel, of)) = remark.turn {
-            turn_ui(ui, turn_entry(state, channel, of), commands);
+            let (label, turn) = turn_entry(state, channel, of);
+            button_ui(ui, Button::new(label).small(), "In every condition; can be undone", turn, commands);
         }
         if let Some(phase) = remark.phase {
-            offer_ui(ui, phase, commands);
+            let label = format!("Correct the phase by {}", setting::PHASE.text(phase.into()));
+            button_ui(ui, Button::new(label).small(), UNDONE, setting::PHASE.to(phase), commands);
         }
     }
 }
+
+/// What is said of a button that decides for every condition.
+const UNDONE: &str = "In every condition; undo takes it back";
 
 fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
     let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) { " dB²" } else { "" };
@@ -354,37 +360,14 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
     });
 }
 
-/// The click that corrects the phase as a remark offers.
-fn offer_ui(ui: &mut Ui, phase: PhaseCorrection, commands: &mut Vec<Command>) {
-    let button = ui.small_button(format!("Correct the phase by {}", setting::PHASE.text(phase.into())));
-    button.on_hover_text("In every condition; undo takes it back").asks(setting::PHASE.to(phase), commands);
-}
-
 /// What couplings would bring off the axis, where that is worth it, and the click that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else { return };
     let couplings = assessment.couplings;
     assessment.offer().into_iter().for_each(|text| remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text)));
-    let words = format!("Use {}", couplings.name());
-    ui.small_button(words)
-        .on_hover_text("In every condition; undo takes it back")
-        .asks(setting::COUPLINGS.to(couplings), commands);
+    let button = Button::new(format!("Use {}", couplings.name())).small();
+    button_ui(ui, button, UNDONE, setting::COUPLINGS.to(couplings), commands);
     entries_ui(ui, [("Look at the couplings", Command::ShowView(View::Couplings))], commands);
-}
-
-/// The click that turns the models of a channel, or puts them back.
-fn turn_ui(ui: &mut Ui, (label, turn): (String, Command), commands: &mut Vec<Command>) {
-    let button = named(ui.small_button(&label), Role::Button, label);
-    button.on_hover_text("In every condition; can be undone").asks(turn, commands);
-}
-
-/// The click that takes a response out of the objective.
-fn ignore_ui(ui: &mut Ui, state: &State, pair: Pair, commands: &mut Vec<Command>) {
-    let name = state.dataset().pair_name(pair);
-    let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));
-    if button.on_hover_text(format!("Give {name} no weight in the objective, in every condition")).clicked() {
-        commands.push(Edit::Fit(pair, false).into());
-    }
 }
 
 fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {

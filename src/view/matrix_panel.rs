@@ -2,8 +2,8 @@
 //! left, and how sure that is.
 
 use egui::{
-    Align2, Color32, FontId, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+    pos2, vec2,
 };
 
 use gdcm_core::correction::Channel;
@@ -14,7 +14,7 @@ use gdcm_core::units::s_to_ms;
 
 use gdcm_files::figure::decimals;
 
-use super::palette::medium;
+use super::palette::{body, medium, small};
 use super::{
     BODY_SIZE, Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui,
     gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui, table_menu_ui, turn_entry,
@@ -48,13 +48,13 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
     for (words, color) in [("not reduced", palette.warning), ("after", palette.text), ("before", palette.quiet_mark)] {
         let upto = row.with_max_x(right);
-        let place = painted_text(ui, upto, -0.01, words, FontId::proportional(SMALL_SIZE), palette.dim_text);
+        let place = painted_text(ui, upto, -0.01, words, small(), palette.dim_text);
         let mark = Rect::from_center_size(pos2(place.left() - 9.0, row.center().y), vec2(9.0, 3.0));
         ui.painter().rect_filled(mark, 1.5, color);
         right = mark.left() - 10.0;
     }
     if row.width() > 310.0 {
-        painted_text(ui, row.with_max_x(right), -0.01, "J", FontId::proportional(SMALL_SIZE), palette.dim_text);
+        painted_text(ui, row.with_max_x(right), -0.01, "J", small(), palette.dim_text);
     }
 }
 
@@ -72,23 +72,24 @@ fn cells_ui(
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
     let focus = state.display.pair;
     let name_look = |channel, is_of_focus| match (blamed.contains(&channel), is_of_focus) {
-        (true, _) => (palette.warning, FontId::proportional(SMALL_SIZE)),
+        (true, _) => (palette.warning, small()),
         (_, true) => (palette.text, medium(SMALL_SIZE)),
-        _ => (palette.dim_text, FontId::proportional(SMALL_SIZE)),
+        _ => (palette.dim_text, small()),
     };
     // A matrix of more channels than there is room for scrolls by itself: verdict and export stay.
     ScrollArea::both().id_salt("constraint matrix").max_height(room).show(ui, |ui| {
         let (area, _) = ui.allocate_exact_size(size, Sense::hover());
         for (input, channel) in inputs.iter().enumerate() {
             let x = area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
-            let look = name_look(Channel::Input(input), input == focus.input);
-            label(ui, pos2(x, area.top() + 0.5 * HEADER_HEIGHT), Align2::CENTER_CENTER, &channel.name, look);
+            let (color, font) = name_look(Channel::Input(input), input == focus.input);
+            let place = pos2(x, area.top() + 0.5 * HEADER_HEIGHT);
+            ui.painter().text(place, Align2::CENTER_CENTER, &channel.name, font, color);
         }
         for (output, channel) in outputs.iter().enumerate() {
             let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
             let place = pos2(area.left() + ROW_LABEL_WIDTH - 8.0, top + 0.5 * cell_height);
-            let look = name_look(Channel::Output(output), output == focus.output);
-            label(ui, place, Align2::RIGHT_CENTER, &channel.name, look);
+            let (color, font) = name_look(Channel::Output(output), output == focus.output);
+            ui.painter().text(place, Align2::RIGHT_CENTER, &channel.name, font, color);
             for input in 0..inputs.len() {
                 let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
                 let rect = Rect::from_min_size(pos2(left, top), vec2(width - GAP, cell_height));
@@ -97,10 +98,6 @@ fn cells_ui(
             }
         }
     });
-}
-
-fn label(ui: &Ui, place: egui::Pos2, align: Align2, text: &str, (color, font): (Color32, FontId)) {
-    ui.painter().text(place, align, text, font, color);
 }
 
 struct Cell<'a> {
@@ -131,17 +128,9 @@ impl<'a> Cell<'a> {
         }
     }
 
-    fn gain(&self) -> Option<f64> {
-        self.shown?.wanted_gain(self.pair)
-    }
-
     /// Why it has no G, once that is known.
     fn undefined(&self) -> Option<Undefined> {
         self.shown?.comparison.undefined[self.pair]
-    }
-
-    fn is_undefined(&self) -> bool {
-        self.undefined().is_some()
     }
 
     fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
@@ -155,7 +144,7 @@ impl<'a> Cell<'a> {
         let lock = self.lock_ui(ui, rect, is_pointed, palette);
         let space = response.has_focus() && ui.input(|input| input.key_pressed(Key::Space));
         if lock.clicked() || response.double_clicked() || space {
-            if self.constrained || !self.is_undefined() {
+            if self.constrained || self.undefined().is_none() {
                 commands.push(Edit::Hold(self.pair, !self.constrained).into());
             }
         } else if response.clicked() {
@@ -171,7 +160,8 @@ impl<'a> Cell<'a> {
         let place = Rect::from_min_size(corner, vec2(LOCK_SIZE, LOCK_SIZE));
         let response = ui.interact(place.expand(2.0), ui.scope_id().with(("hold", self.pair)), Sense::click());
         let name = format!("Hold {}", self.name);
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, !self.is_undefined(), self.constrained, &name));
+        response
+            .widget_info(|| WidgetInfo::selected(Role::CheckBox, self.undefined().is_none(), self.constrained, &name));
         if !(is_pointed || response.contains_pointer() || response.has_focus()) {
             return response;
         }
@@ -185,7 +175,7 @@ impl<'a> Cell<'a> {
                 square.right_top() + vec2(-1.8, 2.6),
             ];
             ui.painter().line(tick.to_vec(), stroke);
-        } else if !self.is_undefined() {
+        } else if self.undefined().is_none() {
             ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, palette.text), StrokeKind::Inside);
         }
         let hint = match (self.undefined(), self.constrained) {
@@ -215,11 +205,10 @@ impl<'a> Cell<'a> {
     /// G and D, each with half the width of its bar, over an underline of its part of J.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
-        let small = FontId::proportional(SMALL_SIZE);
-        let (Some(gain), Some(delay_s)) = (self.gain(), shown.wanted_delay_s(self.pair)) else {
+        let (Some(gain), Some(delay_s)) = (shown.wanted_gain(self.pair), shown.wanted_delay_s(self.pair)) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
             let words = if nothing { "nothing" } else { "no G" };
-            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, small, palette.dim_text);
+            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, small(), palette.dim_text);
             return;
         };
         let cost = shown.cost[self.pair];
@@ -230,10 +219,8 @@ impl<'a> Cell<'a> {
         let strong = if self.fitted { palette.text } else { palette.quiet_text };
         let gain_half = self.sureness.half(Scalar::Gain(self.pair)).map(|half| format!("±{:.0}", 100.0 * half));
         let delay_half = self.sureness.half(shown.wanted_delay(self.pair)).map(|half| format!("±{:.0}", s_to_ms(half)));
-        let values = [
-            (decimals(gain, 2), medium(BODY_SIZE), gain_half),
-            (decimals(s_to_ms(delay_s), 0), FontId::proportional(SMALL_SIZE), delay_half),
-        ];
+        let values =
+            [(decimals(gain, 2), medium(BODY_SIZE), gain_half), (decimals(s_to_ms(delay_s), 0), small(), delay_half)];
         let lower = rect.top() + 0.5 * rect.height();
         let halves = [rect.with_max_y(lower), rect.with_min_y(lower - 1.0)];
         for (place, (half, (text, font, bar))) in halves.into_iter().zip(values).enumerate() {
@@ -243,7 +230,7 @@ impl<'a> Cell<'a> {
             }
             let value = painted_text(ui, line, 0.0, &text, font, strong);
             if let Some(bar) = bar {
-                let galley = ui.painter().layout_no_wrap(bar, small.clone(), palette.dim_text);
+                let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
                 // A bar of three digits beside a value of three has no room: both stand in the tooltip and in the card.
                 let place = pos2(line.right() - galley.size().x, line.center().y - 0.5 * galley.size().y);
                 if place.x > value.right() {
@@ -271,7 +258,7 @@ impl<'a> Cell<'a> {
             turn_entry(self.state, channel, (!is_turned).then_some(SignRole::Identified))
         };
         entries_ui(ui, Channel::of(self.pair).map(turn), commands);
-        if let Some(shown) = self.shown.filter(|_| !self.is_undefined()) {
+        if let Some(shown) = self.shown.filter(|_| self.undefined().is_none()) {
             let (id, pair) = (shown.condition.id(), self.pair);
             let values = [
                 ("G", ExplainTarget::DeltaGain(id, pair)),
@@ -340,32 +327,27 @@ pub struct CardRow {
 /// Gain, delay and both parts of J of a response: what it wants, and what is left after the correction.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
     let sureness = state.sureness();
-    let row = |name, wants: String, left: String, half: Option<String>, is_missed| CardRow {
-        name,
-        wants,
-        left,
-        half: half.unwrap_or_default(),
-        is_missed,
-    };
     let mut rows = Vec::new();
     if let Some(gain) = shown.wanted_gain(pair) {
         let left = gain / shown.correction.net_gain(pair);
         let half = sureness.half(Scalar::Gain(pair)).map(|half| format!("{} %", decimals(100.0 * half, 1)));
-        rows.push(row("gain G", decimals(gain, 3), decimals(left, 3), half, false));
+        let (wants, left, half) = (decimals(gain, 3), decimals(left, 3), half.unwrap_or_default());
+        rows.push(CardRow { name: "gain G", wants, left, half, is_missed: false });
     }
     if let Some(delay_s) = shown.wanted_delay_s(pair) {
         let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
         let ms = |value: f64| format!("{} ms", decimals(value, 1));
-        let half = sureness.half(shown.wanted_delay(pair)).map(|half| ms(s_to_ms(half)));
+        let half = sureness.half(shown.wanted_delay(pair)).map_or(String::new(), |half| ms(s_to_ms(half)));
         let is_missed = left_ms.abs() > 0.5 && left_ms.abs() >= 0.99 * s_to_ms(delay_s).abs();
-        rows.push(row("delay D", ms(s_to_ms(delay_s)), ms(left_ms), half, is_missed));
+        rows.push(CardRow { name: "delay D", wants: ms(s_to_ms(delay_s)), left: ms(left_ms), half, is_missed });
     }
     if let Some(change) = shown.cost[pair] {
         let (before, after) = (change.uncorrected, change.corrected);
         for (name, before, after) in
             [("J magnitude", before.magnitude, after.magnitude), ("J phase", before.phase, after.phase)]
         {
-            rows.push(row(name, decimals(before, 1), decimals(after, 1), None, is_not_reduced(before, after)));
+            let (wants, left, is_missed) = (decimals(before, 1), decimals(after, 1), is_not_reduced(before, after));
+            rows.push(CardRow { name, wants, left, half: String::new(), is_missed });
         }
     }
     rows
@@ -388,20 +370,18 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     painted_text(ui, line(0), 0.0, &title, medium(BODY_SIZE), palette.text);
     let places = [inner.width() * 0.54, inner.width() * 0.78, inner.width()];
     let right = |at: f32| at - inner.width() - 0.01;
-    let small = FontId::proportional(SMALL_SIZE);
     let level = state.sureness().level().map(|level| format!("± {:.0} %", 100.0 * level)).unwrap_or_default();
     for (at, head) in places.into_iter().zip(["wants", "left", level.as_str()]) {
-        painted_text(ui, line(0), right(at), head, small.clone(), palette.dim_text);
+        painted_text(ui, line(0), right(at), head, small(), palette.dim_text);
     }
     let Some(shown) = state.shown() else { return };
     for (place, row) in card_rows(state, shown, pair).iter().enumerate() {
         let line = line(place + 1);
-        let body = FontId::proportional(BODY_SIZE);
-        painted_text(ui, line, 0.0, row.name, body.clone(), palette.dim_text);
-        painted_text(ui, line, right(places[0]), &row.wants, body.clone(), palette.text);
+        painted_text(ui, line, 0.0, row.name, body(), palette.dim_text);
+        painted_text(ui, line, right(places[0]), &row.wants, body(), palette.text);
         let color = if row.is_missed { palette.warning } else { palette.text };
-        painted_text(ui, line, right(places[1]), &row.left, body.clone(), color);
-        painted_text(ui, line, right(places[2]), &row.half, body, palette.dim_text);
+        painted_text(ui, line, right(places[1]), &row.left, body(), color);
+        painted_text(ui, line, right(places[2]), &row.half, body(), palette.dim_text);
     }
 }
 

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align, Checkbox, FontId, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2,
-    vec2,
+    Align, Checkbox, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_core::dataset::{BundleKind, Model, ModelId, Origin};
@@ -14,7 +13,7 @@ use gdcm_core::study::{Edit, ExplainTarget};
 use gdcm_files::figure::compact;
 
 use super::answer_panel::chevron;
-use super::palette::medium;
+use super::palette::{body, medium, small};
 use super::{
     Asks, BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui,
     named, named_switch, painted_text, question_menu_ui, region_ui, row_text, table_heading_ui, table_menu_ui,
@@ -117,10 +116,10 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
     if let Some(order) = order {
         words = format!("order {order} · {words}");
     }
-    let place = painted_text(ui, row, -0.01, &words, FontId::proportional(SMALL_SIZE), palette.dim_text);
+    let place = painted_text(ui, row, -0.01, &words, small(), palette.dim_text);
     if order.is_some() {
         let star = row.with_max_x(place.left() - 3.0);
-        painted_text(ui, star, -0.01, "★", FontId::proportional(SMALL_SIZE), palette.identified);
+        painted_text(ui, star, -0.01, "★", small(), palette.identified);
     }
     table_menu_ui(ui, &response, TableKind::of_bundle(BundleKind::Identified), commands);
     let response = named_switch(response, Role::Button, is_open, "Identified models");
@@ -147,11 +146,10 @@ fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, comm
 
 fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-    let small = FontId::proportional(SMALL_SIZE);
     for (head, end) in trims.iter().flat_map(|trims| trims.heads.iter().zip(TRIM_ENDS)) {
-        painted_text(ui, row.with_max_x(row.left() + end), -0.01, head, small.clone(), palette.dim_text);
+        painted_text(ui, row.with_max_x(row.left() + end), -0.01, head, small(), palette.dim_text);
     }
-    painted_text(ui, row, -1.0, "discontinuity", small, palette.dim_text);
+    painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);
 }
 
 /// Where the columns of a trim end \[pt from the row's left edge\].
@@ -367,7 +365,7 @@ impl<'a> ModelRow<'a> {
         for (offset, end) in offsets.iter().zip(TRIM_ENDS) {
             let color = if !self.kept || offset == "·" { palette.quiet_text } else { palette.text };
             let upto = rect.with_max_x(rect.left() + end);
-            let place = painted_text(ui, upto, -0.01, offset, FontId::proportional(BODY_SIZE), color);
+            let place = painted_text(ui, upto, -0.01, offset, body(), color);
             if !self.kept && offset != "·" {
                 ui.painter().hline(place.x_range(), place.center().y, egui::Stroke::new(1.0, color));
             }
@@ -379,7 +377,7 @@ impl<'a> ModelRow<'a> {
         let left = rect.left() + 42.0;
         let room = rect.right() - value_width - left;
         let name = elided_among(ui, self.name, self.neighbours, room, BODY_SIZE);
-        let mut job = egui::text::LayoutJob::simple_singleline(name, egui::FontId::proportional(BODY_SIZE), color);
+        let mut job = egui::text::LayoutJob::simple_singleline(name, body(), color);
         if !self.kept {
             job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
         }

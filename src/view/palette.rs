@@ -26,6 +26,16 @@ pub fn medium(size: f32) -> FontId {
 
 const MEDIUM: &str = "medium";
 
+/// The typeface of captions.
+pub fn small() -> FontId {
+    FontId::proportional(SMALL_SIZE)
+}
+
+/// The typeface of running text.
+pub fn body() -> FontId {
+    FontId::proportional(BODY_SIZE)
+}
+
 const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }

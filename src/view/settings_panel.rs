@@ -1,6 +1,6 @@
 //! The settings that change a result: a control for each row of the table of settings.
 
-use egui::{ComboBox, Grid, RichText, Role, Slider, Ui, WidgetInfo, pos2};
+use egui::{ComboBox, Grid, Role, Slider, Ui, WidgetInfo, pos2};
 
 use gdcm_core::correction::GainSource;
 use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
@@ -8,8 +8,8 @@ use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, s
 use super::answer_panel::chevron;
 use super::palette::medium;
 use super::{
-    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, SMALL_SIZE, State, named_switch, painted_text,
-    region_ui, row_ui,
+    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, State, named_switch, painted_text, region_ui,
+    row_ui,
 };
 
 /// Largest value on a slider; more can be typed.
@@ -37,20 +37,31 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             let place = line[0].control.place;
             matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
         };
-        let (first, advanced): (Vec<_>, Vec<_>) = lines_of(state).into_iter().partition(is_first);
-        let (sliders, first): (Vec<_>, Vec<_>) =
-            first.into_iter().partition(|line| line[0].control.place == Place::Slider);
-        for line in sliders {
-            Panel { ui, state, palette, commands }.slider_ui(line[0]);
-        }
+        let (mut first, advanced): (Vec<_>, Vec<_>) = lines_of(state).into_iter().partition(is_first);
+        first.sort_by_key(|line| line[0].control.place != Place::Slider);
         for line in first {
-            ui.horizontal_wrapped(|ui| Panel { ui, state, palette, commands }.line_ui(&line));
+            match line[0].control.place {
+                Place::Slider => Panel { ui, state, palette, commands }.slider_ui(line[0]),
+                _ => drop(ui.horizontal_wrapped(|ui| {
+                    let mut panel = Panel { ui, state, palette, commands };
+                    panel.caption_ui(line[0]);
+                    panel.controls_ui(&line);
+                })),
+            }
         }
         ui.add_space(8.0);
         advanced_head_ui(ui, state.display.advanced_open, palette, commands);
-        if state.display.advanced_open {
-            lines_ui(ui, state, advanced, palette, commands);
+        if !state.display.advanced_open {
+            return;
         }
+        Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
+            for line in advanced {
+                Panel { ui, state, palette, commands }.caption_ui(line[0]);
+                ui.horizontal(|ui| Panel { ui, state, palette, commands }.controls_ui(&line));
+                ui.end_row();
+                Panel { ui, state, palette, commands }.note_ui(line[0]);
+            }
+        });
     });
 }
 
@@ -60,23 +71,6 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Advanced", medium(BODY_SIZE), palette.text);
     named_switch(response, Role::Button, is_open, "Advanced settings").asks(Command::ShowAdvanced(!is_open), commands);
-}
-
-fn lines_ui(
-    ui: &mut Ui,
-    state: &State,
-    lines: Vec<Vec<&'static Setting>>,
-    palette: &Palette,
-    commands: &mut Vec<Command>,
-) {
-    Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
-        for line in lines {
-            Panel { ui, state, palette, commands }.caption_ui(line[0]);
-            ui.horizontal(|ui| Panel { ui, state, palette, commands }.controls_ui(&line));
-            ui.end_row();
-            Panel { ui, state, palette, commands }.note_ui(line[0]);
-        }
-    });
 }
 
 /// The control of one setting, where a view is about it.
@@ -136,19 +130,14 @@ impl Panel<'_, '_> {
     }
 
     fn caption_ui(&mut self, setting: &Setting) {
-        let label = self.ui.label(RichText::new(setting.control.caption).color(self.palette.dim_text));
+        let label = self.ui.label(self.palette.dim(setting.control.caption));
         if *setting == setting::PHASE {
             label.on_hover_text(LEADS_IN_SHORT);
         }
     }
 
     fn small_ui(&mut self, text: &str) {
-        self.ui.label(RichText::new(text).size(SMALL_SIZE).color(self.palette.dim_text));
-    }
-
-    fn line_ui(&mut self, line: &[&'static Setting]) {
-        self.caption_ui(line[0]);
-        self.controls_ui(line);
+        self.ui.label(self.palette.small(text));
     }
 
     fn controls_ui(&mut self, line: &[&'static Setting]) {
@@ -166,7 +155,7 @@ impl Panel<'_, '_> {
         let is_idle = settings.gain_source == GainSource::MeanOfPairs && settings.phase == PhaseCorrection::Lead;
         if *setting == setting::GAIN_SOURCE && is_idle {
             self.ui.label("");
-            let text = RichText::new("No effect with leads").size(SMALL_SIZE).color(self.palette.warning);
+            let text = self.palette.small_warning("No effect with leads");
             self.ui.label(text).on_hover_text(format!("G from {}", settings.gain_source_words()));
             self.ui.end_row();
         }
@@ -224,7 +213,7 @@ impl Panel<'_, '_> {
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
-                let caption = ui.label(RichText::new(setting.control.caption).color(self.palette.dim_text));
+                let caption = ui.label(self.palette.dim(setting.control.caption));
                 ui.add_space((LABEL_WIDTH - caption.rect.width()).max(0.0));
                 let gap = ui.spacing().item_spacing.x;
                 ui.spacing_mut().slider_width = (ui.available_width() - TYPED_WIDTH - 2.0 * gap).max(60.0);
@@ -251,10 +240,8 @@ impl Panel<'_, '_> {
     fn threshold_ui(&mut self, setting: &'static Setting, value: Value, on: f64, range: [f64; 2]) {
         let mut counts = value != Value::Nothing;
         let response = self.ui.checkbox(&mut counts, "from");
-        let clicked = response.changed();
-        let name = format!("{} counts", setting.control.caption);
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, counts, name.as_str()));
-        response.on_hover_text(setting.help);
+        let response = named_switch(response, Role::CheckBox, counts, format!("{} counts", setting.control.caption));
+        let clicked = response.on_hover_text(setting.help).changed();
         let shown = if let Value::Number(value) = value { value } else { on };
         let field = field_of(setting, setting.control.label, range);
         let entered = self.ui.add_enabled_ui(counts, |ui| field.ui(ui, shown)).inner;
@@ -318,11 +305,10 @@ impl Panel<'_, '_> {
     fn automatic_ui(&mut self, setting: &Setting, by_hand: bool) -> Option<bool> {
         let mut automatic = !by_hand;
         let response = self.ui.checkbox(&mut automatic, "auto");
-        let changed = response.changed();
         let name = format!("{} automatic", setting.control.caption);
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, true, automatic, name.as_str()));
-        response.on_hover_text("From the quantiles of each condition; off: set by hand, the same for every condition");
-        changed.then_some(automatic)
+        let hint = "From the quantiles of each condition; off: set by hand, the same for every condition";
+        let response = named_switch(response, Role::CheckBox, automatic, name).on_hover_text(hint);
+        response.changed().then_some(automatic)
     }
 }
 

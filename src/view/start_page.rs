@@ -1,15 +1,15 @@
 //! The page without panels: three ways in, each named by what the engineer has, and what is open behind it.
 
 use egui::{
-    Align, Align2, Button, Color32, FontId, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense,
-    Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense, Shape,
+    Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 use gdcm_files::figure::compact;
 use serde::{Deserialize, Serialize};
 
 use super::assembling::AssemblingCommand;
 use super::conditions_panel::cost_picture_ui;
-use super::palette::{DISPLAY_SIZE, TITLE_SIZE, medium};
+use super::palette::{DISPLAY_SIZE, TITLE_SIZE, body, medium, small};
 use super::plot::{BodeCurve, Pane, Role as CurveRole};
 use super::records::RecordsCommand;
 use super::views::bode_curves;
@@ -140,7 +140,7 @@ fn ways_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let stroke = Stroke::new(1.0, palette.line);
     ui.painter().extend(corners.windows(2).flat_map(|ends| Shape::dashed_line(ends, stroke, 4.0, 3.0)));
     let words = "or drop files, or a folder, anywhere in this window";
-    ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(BODY_SIZE), palette.dim_text);
+    ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, body(), palette.dim_text);
 }
 
 fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
@@ -154,7 +154,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
         text.with_min_y(rect.center().y).with_max_y(rect.bottom() - 12.0),
     ];
     painted_text(ui, upper, 0.0, way.title, medium(TITLE_SIZE), palette.text);
-    painted_text(ui, lower, 0.0, way.words, FontId::proportional(BODY_SIZE), palette.dim_text);
+    painted_text(ui, lower, 0.0, way.words, body(), palette.dim_text);
     let place = Rect::from_center_size(pos2(rect.right() - 84.0, rect.center().y), vec2(132.0, 28.0));
     let color = if is_primary { palette.on_accent() } else { palette.text };
     let button = Button::new(RichText::new(way.button).font(medium(BODY_SIZE)).color(color)).min_size(place.size());
@@ -191,18 +191,11 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
             ui.painter().rect_filled(row, 4.0, palette.raised);
         }
         let color = if file.missing { palette.quiet_text } else { palette.accent };
-        let name = painted_text(ui, row, 4.0, &file.name, FontId::proportional(BODY_SIZE), color);
+        let name = painted_text(ui, row, 4.0, &file.name, body(), color);
         let folder = if file.missing { format!("{}, missing", file.folder) } else { file.folder.clone() };
         let room = row.right() - name.right() - 16.0;
         let folder = super::controls::elided(ui, &folder, room, SMALL_SIZE);
-        painted_text(
-            ui,
-            row,
-            name.right() - row.left() + 10.0,
-            &folder,
-            FontId::proportional(SMALL_SIZE),
-            palette.dim_text,
-        );
+        painted_text(ui, row, name.right() - row.left() + 10.0, &folder, small(), palette.dim_text);
         let response = named(response, Role::Button, format!("Open again: {} in {}", file.name, file.folder));
         if response.clicked() && !file.missing {
             commands.push(Command::Open(file.path.clone()));
@@ -260,7 +253,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     let plot = area.with_min_x(area.left() + 0.52 * area.width());
     let title = format!("{}, phase, condition {}", state.dataset().pair_name(pair), state.condition().id());
     let head = plot.with_max_y(plot.top() + 18.0);
-    painted_text(ui, head, 0.0, &title, FontId::proportional(SMALL_SIZE), palette.dim_text);
+    painted_text(ui, head, 0.0, &title, small(), palette.dim_text);
     let band = state.study.settings.band;
     phases_ui(ui, plot.with_min_y(head.bottom()), &curves, (band.min(), band.max()), palette);
 }
@@ -299,19 +292,18 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
         let inner = plot.shrink2(vec2(0.0, 8.0));
         pos2(plot.left() + plot.width() * step as f32 / STEPS as f32, inner.bottom() - part * inner.height())
     };
-    let small = FontId::proportional(SMALL_SIZE);
     let [omegas, lines] = grid_of((min, max), (least, most));
     for tick in omegas {
         let x = plot.left() + plot.width() * ((tick / min).ln() / (max / min).ln()) as f32;
         ui.painter().vline(x, plot.y_range(), Stroke::new(1.0, palette.grid));
         let under = pos2(x, plot.bottom() + 2.0);
-        ui.painter().text(under, Align2::CENTER_TOP, compact(tick), small.clone(), palette.dim_text);
+        ui.painter().text(under, Align2::CENTER_TOP, compact(tick), small(), palette.dim_text);
     }
     for line in lines {
         let y = at(0, line).y;
         ui.painter().hline(plot.x_range(), y, Stroke::new(1.0, palette.grid));
         let beside = pos2(plot.left() - 4.0, y);
-        ui.painter().text(beside, Align2::RIGHT_CENTER, compact(line), small.clone(), palette.dim_text);
+        ui.painter().text(beside, Align2::RIGHT_CENTER, compact(line), small(), palette.dim_text);
     }
     let path =
         |phases: &[f64]| -> Vec<Pos2> { phases.iter().enumerate().map(|(step, phase)| at(step, *phase)).collect() };
@@ -333,7 +325,7 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
     for (phases, name, color, aside) in named {
         let middle = at(STEPS / 2, phases[STEPS / 2]) + vec2(aside, 0.0);
         let align = if aside > 0.0 { Align2::LEFT_BOTTOM } else { Align2::RIGHT_TOP };
-        ui.painter().text(middle, align, name, small.clone(), palette.name_of(color));
+        ui.painter().text(middle, align, name, small(), palette.name_of(color));
     }
 }
 

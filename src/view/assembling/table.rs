@@ -1,12 +1,13 @@
 //! The table of models, and the list of what is to be completed.
 
-use egui::{Align, Button, Color32, FontId, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2};
+use egui::{Align, Button, Color32, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2};
 
 use crate::view::{Asks, Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text};
 use gdcm_core::assembly::Part;
 use gdcm_core::units::number;
 
 use super::{AssemblingCommand, AssemblyState, columns_ui};
+use crate::view::palette::small;
 
 /// A column of the table.
 pub struct Column {
@@ -117,7 +118,7 @@ fn paint_cells(
         let others = neighbours.map(|other| other.map(|other| column.text(other)));
         let text = elided_among(ui, &text, others.each_ref().map(Option::as_deref), room - 6.0, SMALL_SIZE);
         let place = Rect::from_x_y_ranges(left + 3.0..=left + room, row.y_range());
-        painted_text(ui, place, 0.0, &text, FontId::proportional(SMALL_SIZE), color);
+        painted_text(ui, place, 0.0, &text, small(), color);
         left += room;
     }
 }

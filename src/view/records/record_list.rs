@@ -1,7 +1,8 @@
 //! The records of a condition line by line, and which columns of one are its channels.
 
-use egui::{Align, Checkbox, ComboBox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
+use egui::{Align, Checkbox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2};
 
+use crate::view::controls::list_ui;
 use crate::view::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
 use gdcm_core::dataset::{ChannelRemedy, ChannelSide, RecordKind};
 use gdcm_core::identification::Signal;
@@ -142,14 +143,9 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
 fn kind_ui(ui: &mut Ui, index: usize, row: &LaidOutRecord, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         ui.label(palette.small(format!("{}: a", row.table.name)));
-        let kinds = ComboBox::from_id_salt("kind of a record").width(90.0).selected_text(row.guess.kind.word());
-        let kinds = kinds.show_ui(ui, |ui| {
-            for kind in RecordKind::ALL {
-                ui.selectable_label(kind == row.guess.kind, kind.word())
-                    .asks(RecordsCommand::SetKind(index, kind), commands);
-            }
-        });
-        named(kinds.response, AccessRole::ComboBox, "Manoeuvre of the record");
+        let kinds = RecordKind::ALL.map(|kind| (kind, kind == row.guess.kind, kind.word().to_owned()));
+        let kind = list_ui(ui, "Manoeuvre of the record", (90.0, row.guess.kind.word()), kinds);
+        commands.extend(kind.map(|kind| RecordsCommand::SetKind(index, kind).into()));
         if row.table.part_s.is_some() && ui.small_button("Remove part").clicked() {
             commands.push(RecordsCommand::RemovePart(index).into());
         }
@@ -249,7 +245,9 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
         let typed = number_entry_ui(ui, &label, &number(factor), "1", FIELD_WIDTH, commands);
         commands.extend(typed.flatten().zip(used).map(|(factor, used)| with(ColumnUse { factor, ..used })));
     } else {
-        let said = unit_ui(ui, &format!("Unit of the column of {name}"), &open_units);
+        // The units that samples can be in, of which none is said.
+        let units = open_units.into_iter().map(|unit| (unit, false, unit.to_owned()));
+        let said = list_ui(ui, &format!("Unit of the column of {name}"), (FIELD_WIDTH, "unit?"), units);
         commands.extend(said.zip(used).map(|(said, used)| with(used.in_unit(said, unit))));
     }
     let delay_s = channels.get(signal.index).map_or(0.0, |channel| channel.delay_s);
@@ -271,21 +269,6 @@ fn channel_row_ui(ui: &mut Ui, records: &ConditionRecords, signal: &Signal, unit
     ui.end_row();
 }
 
-/// A choice among the units that samples can be in, of which none is said; what was chosen.
-fn unit_ui<'u>(ui: &mut Ui, name: &str, units: &[&'u str]) -> Option<&'u str> {
-    let mut said = None;
-    let shown = ComboBox::from_id_salt(name).width(FIELD_WIDTH).selected_text("unit?");
-    let shown = shown.show_ui(ui, |ui| {
-        for unit in units {
-            if ui.selectable_label(false, *unit).clicked() {
-                said = Some(*unit);
-            }
-        }
-    });
-    named(shown.response, AccessRole::ComboBox, name);
-    said
-}
-
 /// A choice among the columns of a record; what was chosen anew.
 fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let words = |column: usize| {
@@ -294,15 +277,6 @@ fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>
             None => of.name.clone(),
         })
     };
-    let mut taken = None;
-    let shown = ComboBox::from_id_salt(name).width(150.0).selected_text(chosen.map_or("?".to_owned(), words));
-    let shown = shown.show_ui(ui, |ui| {
-        for column in 0..row.table.columns.len() {
-            if ui.selectable_label(chosen == Some(column), words(column)).clicked() {
-                taken = Some(column);
-            }
-        }
-    });
-    named(shown.response, AccessRole::ComboBox, name);
-    taken
+    let columns = (0..row.table.columns.len()).map(|column| (column, chosen == Some(column), words(column)));
+    list_ui(ui, name, (150.0, &chosen.map_or("?".to_owned(), words)), columns)
 }

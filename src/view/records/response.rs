@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, FontId, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
+use egui::{Color32, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
 
+use crate::view::controls::text_width;
+use crate::view::palette::small;
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
-use crate::view::{Palette, SMALL_SIZE, State, named, painted_text};
+use crate::view::{Palette, State, named, painted_text};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::identification::{
     CautionNote, EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
@@ -137,11 +139,10 @@ fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
         ui.spacing_mut().item_spacing.x = 14.0;
         for (key, text, color) in legend.into_iter().chain(unexcited) {
             // One piece: no line ends between a sample and its words.
-            let small = FontId::proportional(SMALL_SIZE);
-            let words = ui.painter().layout_no_wrap(text.to_owned(), small.clone(), palette.dim_text).size().x;
+            let words = text_width(ui, text, small());
             let (rect, response) = ui.allocate_exact_size(vec2(SAMPLE + 4.0 + words, 14.0), Sense::hover());
             key.paint(ui, rect.with_max_x(rect.left() + SAMPLE), color);
-            painted_text(ui, rect, SAMPLE + 4.0, text, small, palette.dim_text);
+            painted_text(ui, rect, SAMPLE + 4.0, text, small(), palette.dim_text);
             named(response, Role::Label, text);
         }
         cut.into_iter().for_each(|words| drop(ui.label(palette.small(words))));

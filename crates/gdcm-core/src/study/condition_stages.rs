@@ -118,15 +118,15 @@ impl ConditionStages {
             Ok(comparison) => {
                 let input = measured.solve_input(&comparison);
                 let delays = self.plain.delays(&input, input.lead_design().as_deref())?.1;
-                let chosen = [comparison.physics.model, comparison.identified.model];
-                let [physics, flight] = [(BundleKind::Physics, chosen[0]), (BundleKind::Identified, chosen[1])];
-                let response = |(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]);
+                let model = |kind: BundleKind| kind.pick(&comparison.physics, &comparison.identified).model;
+                let chosen = BundleKind::BOTH.map(|kind| (kind, model(kind)));
+                let [physics, flight] = chosen.map(|(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]));
                 delays.ok().map(|delays| CouplingSource {
                     condition: Arc::clone(&measured.condition),
                     delays_s: delays.channels(),
-                    contents: [physics, flight].map(|(kind, model)| self.models.content(kind, model)),
-                    physics: response(physics),
-                    flight: response(flight),
+                    contents: chosen.map(|(kind, model)| self.models.content(kind, model)),
+                    physics,
+                    flight,
                     comparison: Arc::clone(&comparison),
                 })
             }

@@ -47,12 +47,13 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
     for condition in before.dataset.conditions() {
         let id = condition.id();
         let (a, b) = (before.choice(id), after.choice(id));
-        let scheduled = ([a.scheduled, b.scheduled], ["left out of the schedule", "in the schedule"]);
-        let held_out = ([a.held_out, b.held_out], ["not held out", "held out"]);
-        for ([before, after], words) in [scheduled, held_out].into_iter().filter(|([a, b], _)| a != b) {
-            let [before, after] = [before, after].map(|is_so| words[usize::from(is_so)]);
-            differences.push(DecisionDifference::new(format!("condition {id}"), before, after));
-        }
+        let mut compare = |before: bool, after: bool, [no, yes]: [&str; 2]| {
+            let word = |is_so: bool| if is_so { yes } else { no };
+            let difference = DecisionDifference::new(format!("condition {id}"), word(before), word(after));
+            differences.extend((before != after).then_some(difference));
+        };
+        compare(a.scheduled, b.scheduled, ["left out of the schedule", "in the schedule"]);
+        compare(a.held_out, b.held_out, ["not held out", "held out"]);
         for kind in BundleKind::BOTH {
             differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
         }

@@ -118,9 +118,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     for test in &uncertainty.second_variables {
         let (name, variable) = (dataset.pair_name(test.pair), test.variable.name().to_owned());
         let cells = match &test.effect {
-            Err(error) => {
-                [NONE, NONE, NONE, NONE, NONE].map(str::to_owned).into_iter().chain([error.to_string()]).collect()
-            }
+            Err(error) => [vec![NONE.to_owned(); 5], vec![error.to_string()]].concat(),
             Ok(effect) => vec![
                 signed(100.0 * effect.effect, 1),
                 percent(Some(effect.visible)),

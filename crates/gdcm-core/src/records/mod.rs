@@ -26,8 +26,10 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use crate::assembly::{ChannelRule, Dimension, PhysicalUnit, conversion_factor, folded_name};
-use crate::assembly::{SignedName, same_channel, sign_between, standard_patterns, time_name_rank};
+use crate::assembly::{
+    ChannelRule, Dimension, PhysicalUnit, SignedName, conversion_factor, folded_name, same_channel, sign_between,
+    standard_patterns, time_name_rank,
+};
 use crate::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
 use crate::identification::FlightRecord;
 use crate::units::{number, telling};

@@ -316,12 +316,12 @@ impl<'a> Flow<'a> {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
         let (quantity, bounds, coordinate) = (self.problem.quantity, self.problem.bounds, self.problem.coordinate());
-        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits_down(lower));
+        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits(lower, f64::floor));
         let kind = match (self.channel(start), self.channel(end)) {
             (first @ Channel::Output(_), last @ Channel::Input(_)) => ConflictKind::AboveUpper {
                 channels: (last, first),
                 asked: coordinate.value(needed),
-                upper: three_digits_up(coordinate.value(0.5 * needed)),
+                upper: three_digits(coordinate.value(0.5 * needed), f64::ceil),
             },
             (first @ Channel::Input(_), last @ Channel::Output(_)) => ConflictKind::BelowLower {
                 channels: (first, last),
@@ -330,7 +330,7 @@ impl<'a> Flow<'a> {
             },
             (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => {
                 let asked = coordinate.value(needed);
-                let upper = three_digits_up(quantity.net(bounds.lower, asked));
+                let upper = three_digits(quantity.net(bounds.lower, asked), f64::ceil);
                 let lower = if quantity.is_gain() { bounds.upper / asked } else { bounds.upper - asked };
                 ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: movable(lower) }
             }
@@ -411,8 +411,8 @@ impl Remedy {
         }
         let [lower, upper] = range_that_does(held);
         // A bound that is not the obstacle stays as it is.
-        let upper = upper.map(|upper| three_digits_up(coordinate.value(upper)).max(problem.bounds.upper));
-        let lower = lower.map(|lower| three_digits_down(coordinate.value(lower)).min(problem.bounds.lower));
+        let upper = upper.map(|upper| three_digits(coordinate.value(upper), f64::ceil).max(problem.bounds.upper));
+        let lower = lower.map(|lower| three_digits(coordinate.value(lower), f64::floor).min(problem.bounds.lower));
         Ok(Some(Self { quantity, upper, lower: lower.filter(|_| quantity.has_lower_bound()), free }))
     }
 

@@ -60,21 +60,21 @@ pub struct Problem {
 pub enum ProblemError {
     /// A table has another shape than the deltas.
     #[error(
-        "the table of {table} entries has {outputs} outputs and {inputs} inputs, but the {quantity}s have {delta_outputs} and {delta_inputs}"
+        "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
+        found.0,
+        found.1,
+        expected.0,
+        expected.1
     )]
     Shape {
         /// What is asked for.
         quantity: Quantity,
         /// Which table.
         table: &'static str,
-        /// Its number of outputs.
-        outputs: usize,
-        /// Its number of inputs.
-        inputs: usize,
-        /// Number of outputs of the deltas.
-        delta_outputs: usize,
-        /// Number of inputs of the deltas.
-        delta_inputs: usize,
+        /// Its numbers of outputs and inputs.
+        found: (usize, usize),
+        /// Those of the deltas.
+        expected: (usize, usize),
     },
     /// A held entry has no delta.
     #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
@@ -177,11 +177,11 @@ impl Problem {
     /// The first [`ProblemError`] found.
     pub fn check(&self) -> Result<(), ProblemError> {
         let quantity = self.quantity;
-        let (delta_outputs, delta_inputs) = (self.delta.outputs(), self.delta.inputs());
+        let expected = (self.delta.outputs(), self.delta.inputs());
         for (table, entries) in [("constrained", &self.constrained), ("fitted", &self.fitted)] {
-            let (outputs, inputs) = (entries.outputs(), entries.inputs());
-            if (outputs, inputs) != (delta_outputs, delta_inputs) {
-                return Err(ProblemError::Shape { quantity, table, outputs, inputs, delta_outputs, delta_inputs });
+            let found = (entries.outputs(), entries.inputs());
+            if found != expected {
+                return Err(ProblemError::Shape { quantity, table, found, expected });
             }
         }
         for (pair, delta) in self.delta.iter() {
@@ -399,17 +399,8 @@ impl Coordinate {
     }
 }
 
-/// The least number of three significant digits that is not below `value`.
-pub(crate) fn three_digits_up(value: f64) -> f64 {
-    three_digits(value, f64::ceil)
-}
-
-/// The greatest number of three significant digits that is not above `value`.
-pub(crate) fn three_digits_down(value: f64) -> f64 {
-    three_digits(value, f64::floor)
-}
-
-fn three_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+/// The number of three significant digits next to `value` on the side to which `round` rounds.
+pub(crate) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
@@ -506,15 +497,15 @@ mod tests {
 
     #[test]
     fn a_figure_is_rounded_to_three_digits_so_that_it_still_suffices() {
-        assert_eq!((three_digits_up(1.8681), three_digits_down(1.8681)), (1.87, 1.86));
-        assert_eq!((three_digits_up(0.060_801), three_digits_down(0.060_801)), (0.0609, 0.0608));
-        assert_eq!((three_digits_up(1234.0), three_digits_down(1234.0)), (1240.0, 1230.0));
-        assert_eq!((three_digits_up(0.999_7), three_digits_down(0.999_7)), (1.0, 0.999));
+        assert_eq!((three_digits(1.8681, f64::ceil), three_digits(1.8681, f64::floor)), (1.87, 1.86));
+        assert_eq!((three_digits(0.060_801, f64::ceil), three_digits(0.060_801, f64::floor)), (0.0609, 0.0608));
+        assert_eq!((three_digits(1234.0, f64::ceil), three_digits(1234.0, f64::floor)), (1240.0, 1230.0));
+        assert_eq!((three_digits(0.999_7, f64::ceil), three_digits(0.999_7, f64::floor)), (1.0, 0.999));
     }
 
     #[test]
     fn a_figure_of_three_digits_up_to_rounding_stays() {
-        assert_eq!((three_digits_up(0.7 * 2.5), three_digits_down(1.4 / 2.5)), (1.75, 0.56));
-        assert_eq!((three_digits_up(0.0), three_digits_down(0.0)), (0.0, 0.0));
+        assert_eq!((three_digits(0.7 * 2.5, f64::ceil), three_digits(1.4 / 2.5, f64::floor)), (1.75, 0.56));
+        assert_eq!((three_digits(0.0, f64::ceil), three_digits(0.0, f64::floor)), (0.0, 0.0));
     }
 }

@@ -90,11 +90,10 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
         slopes[inputs + pair.output] += slope;
     }
     let neutral = quantity.neutral();
-    for (output, value) in solution.outputs.iter().enumerate() {
-        slopes[inputs + output] += problem.alpha * quantity.slope(neutral, *value, neutral);
-    }
-    for (input, value) in solution.inputs.iter().enumerate().filter(|_| quantity.regularises_inputs()) {
-        slopes[input] += problem.alpha * quantity.slope(neutral, *value, neutral);
+    let first = if quantity.regularises_inputs() { 0 } else { inputs };
+    let values = solution.inputs.iter().chain(&solution.outputs);
+    for (slope, value) in slopes.iter_mut().zip(values).skip(first) {
+        *slope += problem.alpha * quantity.slope(neutral, *value, neutral);
     }
     slopes
 }

@@ -239,7 +239,7 @@ fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemE
 fn minimise(objective: &Objective, quantity: Quantity, effort: &Effort<'_>) -> Result<Vec<f64>, ProblemError> {
     let mut scales = start(objective, quantity)?;
     let bounds = (objective.lower.as_slice(), objective.upper.as_slice());
-    Newton::new(objective.scales()).minimise(objective, bounds, &mut scales, effort, |_, _| false);
+    Newton::new(objective.scales(), effort).minimise(objective, bounds, &mut scales, |_, _| false);
     effort.check()?;
     Ok(scales)
 }
@@ -392,9 +392,8 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
     let rows = (0..size).flat_map(|column| [column, size + column]).collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
     let sides = CscMatrix::new(2 * size, size, columns, rows, signs);
-    let ends =
-        free.iter().map(|&index| objective.upper[index]).chain(free.iter().map(|&index| -objective.lower[index]));
-    let ends: Vec<f64> = ends.collect();
+    let upper = free.iter().map(|&index| objective.upper[index]);
+    let ends: Vec<f64> = upper.chain(free.iter().map(|&index| -objective.lower[index])).collect();
     let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
     convex_program(&quadratic, &slope, &sides, &ends, settings).map_err(|reason| ProblemError::Program { reason })
 }

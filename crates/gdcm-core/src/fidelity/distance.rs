@@ -1,5 +1,6 @@
 //! Distances between the models of a bundle, the model that stands for it, and models on the far side of a discontinuity (M5).
 
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::*;
@@ -139,12 +140,8 @@ impl Representative {
             let sum: f64 = kept.iter().filter_map(|&b| distance.between(a, b)).sum();
             scores[a] = Some(sum / kept.len().saturating_sub(1).max(1) as f64);
         }
-        let mut medoid = *kept.first()?;
-        for &model in &kept {
-            if scores[model] < scores[medoid] {
-                medoid = model;
-            }
-        }
+        let by_score = |&&a: &&usize, &&b: &&usize| scores[a].partial_cmp(&scores[b]).unwrap_or(Ordering::Equal);
+        let medoid = *kept.iter().min_by(by_score)?;
         Some(Self { model: pinned.filter(|model| kept.contains(model)).unwrap_or(medoid), scores })
     }
 }

@@ -178,10 +178,6 @@ impl PolarCurve {
         }
         Some(Self { magnitude_db, phase: values.iter().map(|value| value.arg()).collect() })
     }
-
-    fn peak_db(&self) -> f64 {
-        self.magnitude_db.iter().copied().fold(f64::NEG_INFINITY, f64::max)
-    }
 }
 
 /// `20 log10 |H| = 10 log10 |H|^2`; the square spares a root where it neither overflows nor underflows.
@@ -215,7 +211,9 @@ impl PolarResponse {
     /// their output and below the greatest of their input (M6a). Differencing leaves such numbers where zero is meant.
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
-        let peaks = self.curves.map(|_, curve| curve.as_ref().map_or(f64::NEG_INFINITY, PolarCurve::peak_db));
+        let peaks = self.curves.map(|_, curve| {
+            curve.iter().flat_map(|curve| &curve.magnitude_db).copied().fold(f64::NEG_INFINITY, f64::max)
+        });
         let greatest = |of: &dyn Fn(Pair) -> bool| {
             peaks.iter().filter(|(pair, _)| of(*pair)).map(|(_, peak)| *peak).fold(f64::NEG_INFINITY, f64::max)
         };

@@ -162,16 +162,13 @@ impl<T> Index<Scalar> for ScalarTable<T> {
 
 /// Every figure, in the order of the entries.
 fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
+    let of_pair: [fn(Pair) -> Scalar; 4] = [Scalar::Gain, Scalar::Delay, Scalar::BandDelay, Scalar::NetGain];
+    let of_channel: [fn(Channel) -> Scalar; 2] = [Scalar::ChannelGain, Scalar::ChannelDelay];
     let pairs = move |of: fn(Pair) -> Scalar| {
         (0..outputs).flat_map(move |output| (0..inputs).map(move |input| of(Pair::new(output, input))))
     };
-    let channels = move |of: fn(Channel) -> Scalar| Channel::all(inputs, outputs).map(of);
-    pairs(Scalar::Gain)
-        .chain(pairs(Scalar::Delay))
-        .chain(pairs(Scalar::BandDelay))
-        .chain(pairs(Scalar::NetGain))
-        .chain(channels(Scalar::ChannelGain))
-        .chain(channels(Scalar::ChannelDelay))
+    let channels = move |of| Channel::all(inputs, outputs).map(of);
+    of_pair.into_iter().flat_map(pairs).chain(of_channel.into_iter().flat_map(channels))
 }
 
 /// How a response was measured.

@@ -152,8 +152,8 @@ impl Differentiable for Objective {
 
 /// A projected Newton method: each step minimises the quadratic model over the box exactly, so that the set of active bounds is
 /// right as soon as the model is. Clipping an unconstrained step instead stalls at corners.
-#[derive(Clone, Debug)]
-pub(crate) struct Newton {
+pub(crate) struct Newton<'a> {
+    effort: &'a Effort<'a>,
     /// The function at the last point.
     pub(crate) reached: Expansion,
     trial: Expansion,
@@ -161,10 +161,11 @@ pub(crate) struct Newton {
     next: Vec<f64>,
 }
 
-impl Newton {
-    /// Room for so many scales.
-    pub(crate) fn new(scales: usize) -> Self {
+impl<'a> Newton<'a> {
+    /// Room for so many scales; what it does is spent of this effort.
+    pub(crate) fn new(scales: usize, effort: &'a Effort<'a>) -> Self {
         Self {
+            effort,
             reached: Expansion::zero(scales),
             trial: Expansion::zero(scales),
             model: QuadraticModel::new(scales),
@@ -179,28 +180,26 @@ impl Newton {
         function: &impl Differentiable,
         (lower, upper): (&[f64], &[f64]),
         scales: &mut [f64],
-        effort: &Effort<'_>,
         mut enough: impl FnMut(&[f64], &Expansion) -> bool,
     ) {
         // Newton's method needs about ten steps; a flat start or a run along an inflection a few tens.
         const STEPS: usize = 100;
-        expand(function, scales, Curvature::True, &mut self.reached, effort);
+        self.effort.spend(function.work());
+        function.expand(scales, Curvature::True, &mut self.reached);
         let mut near = 0;
         for _ in 0..STEPS {
-            if effort.is_stopped() || enough(scales, &self.reached) {
+            if self.effort.is_stopped() || enough(scales, &self.reached) {
                 return;
             }
             for scale in 0..scales.len() {
                 self.model.low[scale] = lower[scale] - scales[scale];
                 self.model.high[scale] = upper[scale] - scales[scale];
             }
-            let Some((decrease, true_curvature)) = self.minimise_model(function, scales, effort) else {
-                return;
-            };
+            let Some((decrease, true_curvature)) = self.minimise_model(function, scales) else { return };
             // Where Newton's method is this near, three steps end at the rounding of the slopes, also across the end of an
             // envelope.
             near += usize::from(true_curvature && decrease <= 1e-13 * self.reached.value.value.abs());
-            if !self.search_line(function, (lower, upper), scales, decrease, effort) || near == 3 {
+            if !self.search_line(function, (lower, upper), scales, decrease) || near == 3 {
                 return;
             }
         }
@@ -208,17 +207,13 @@ impl Newton {
 
     /// The decrease of the model's step: with the true curvature (`true`) where that is positive definite, else with its
     /// magnitude.
-    fn minimise_model(
-        &mut self,
-        function: &impl Differentiable,
-        scales: &[f64],
-        effort: &Effort<'_>,
-    ) -> Option<(f64, bool)> {
-        if let Some(decrease) = self.model.minimise(&self.reached, effort) {
+    fn minimise_model(&mut self, function: &impl Differentiable, scales: &[f64]) -> Option<(f64, bool)> {
+        if let Some(decrease) = self.model.minimise(&self.reached, self.effort) {
             return Some((decrease, true));
         }
-        expand(function, scales, Curvature::Magnitude, &mut self.reached, effort);
-        Some((self.model.minimise(&self.reached, effort)?, false))
+        self.effort.spend(function.work());
+        function.expand(scales, Curvature::Magnitude, &mut self.reached);
+        Some((self.model.minimise(&self.reached, self.effort)?, false))
     }
 
     /// Takes the longest of the step's halvings that goes down; `false` where none does, or where the step is nothing.
@@ -228,7 +223,6 @@ impl Newton {
         (lower, upper): (&[f64], &[f64]),
         scales: &mut [f64],
         decrease: f64,
-        effort: &Effort<'_>,
     ) -> bool {
         let longest = self.model.step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
         if longest == 0.0 {
@@ -239,7 +233,8 @@ impl Newton {
         let mut fraction = 1.0;
         for _ in 0..40 {
             self.place(fraction, (lower, upper), scales);
-            expand(function, &self.next, Curvature::True, &mut self.trial, effort);
+            self.effort.spend(function.work());
+            function.expand(&self.next, Curvature::True, &mut self.trial);
             if self.trial.value.value <= here.value - 1e-4 * fraction * decrease + noise {
                 scales.copy_from_slice(&self.next);
                 std::mem::swap(&mut self.reached, &mut self.trial);
@@ -264,17 +259,6 @@ impl Newton {
             };
         }
     }
-}
-
-fn expand(
-    function: &impl Differentiable,
-    scales: &[f64],
-    curvature: Curvature,
-    into: &mut Expansion,
-    effort: &Effort<'_>,
-) {
-    effort.spend(function.work());
-    function.expand(scales, curvature, into);
 }
 
 /// The quadratic model of a step: `minimise` fills `step`.

@@ -53,7 +53,7 @@ struct Search<'a> {
     budget: ProofBudget,
     floor: f64,
     effort: &'a Effort<'a>,
-    newton: Newton,
+    newton: Newton<'a>,
     minima: Vec<(Vec<f64>, f64)>,
     best: f64,
     open: OpenNodes,
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
             budget,
             floor,
             effort,
-            newton: Newton::new(scales),
+            newton: Newton::new(scales, effort),
             minima: Vec::new(),
             best: f64::INFINITY,
             open: OpenNodes::new(scales, budget.bytes),
@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
         let bounds = (self.lower.as_slice(), self.upper.as_slice());
         let exact = underestimator.is_exact();
         let mut best = f64::NEG_INFINITY;
-        self.newton.minimise(underestimator, bounds, start, effort, |scales, at| {
+        self.newton.minimise(underestimator, bounds, start, |scales, at| {
             best = best.max(tangent_bound(scales, at, bounds));
             let loss = at.value.value - best;
             // A node that will be branched anyway needs no sharper bound than its distance from the goal.
@@ -205,7 +205,7 @@ impl<'a> Search<'a> {
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         let bounds = (self.objective.lower.as_slice(), self.objective.upper.as_slice());
-        self.newton.minimise(self.objective, bounds, &mut scales, self.effort, |_, _| false);
+        self.newton.minimise(self.objective, bounds, &mut scales, |_, _| false);
         let value = self.newton.reached.value.value;
         if value < self.best {
             let curvature = self.newton.reached.hessian.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));

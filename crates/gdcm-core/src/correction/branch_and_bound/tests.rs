@@ -148,8 +148,8 @@ proptest! {
         let mut bound = f64::NEG_INFINITY;
         let mut scales: Vec<f64> =
             inside.iter().enumerate().map(|(index, scale)| scale.clamp(lower[index], upper[index])).collect();
-        let mut newton = Newton::new(scales.len());
-        newton.minimise(&underestimator, (&lower, &upper), &mut scales, &effort, |scales, at| {
+        let mut newton = Newton::new(scales.len(), &effort);
+        newton.minimise(&underestimator, (&lower, &upper), &mut scales, |scales, at| {
             bound = bound.max(tangent_bound(scales, at, (&lower, &upper)));
             false
         });
@@ -188,7 +188,7 @@ proptest! {
         let effort = Effort::new(&|| false);
         let mut minimum = sample.objective.nearest_to_zero();
         let bounds = (sample.objective.lower.as_slice(), sample.objective.upper.as_slice());
-        Newton::new(minimum.len()).minimise(&sample.objective, bounds, &mut minimum, &effort, |_, _| false);
+        Newton::new(minimum.len(), &effort).minimise(&sample.objective, bounds, &mut minimum, |_, _| false);
         let mut at = Expansion::zero(minimum.len());
         sample.objective.expand(&minimum, Curvature::True, &mut at);
         if let Some(bound) = NodeExclusion::new(&sample.objective).bound_at(&minimum, &at) {

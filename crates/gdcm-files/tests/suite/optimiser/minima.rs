@@ -207,7 +207,7 @@ fn problems_that_are_not_well_posed_are_refused_with_the_reason() {
     let bad = Problem { alpha: f64::NAN, ..good.clone() };
     assert!(matches!(refused(&bad), ProblemError::Alpha { .. }));
     let bad = Problem { fitted: PairTable::filled(4, 6, true), ..good };
-    assert!(matches!(refused(&bad), ProblemError::Shape { table: "fitted", outputs: 4, inputs: 6, .. }));
+    assert!(matches!(refused(&bad), ProblemError::Shape { table: "fitted", found: (4, 6), .. }));
 }
 
 #[test]

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel, Headings};
 use gdcm_core::dataset::{
-    BundleKind, Channel, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin, Provenance,
-    ResponseArray, ResponseDraft, Timing,
+    BundleKind, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin, Provenance, ResponseArray,
+    ResponseDraft,
 };
 
 use crate::file_error::FileError;
 use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
+use crate::models_file::{bare_draft, labels};
 use crate::recognise::{Found, recognise};
 use crate::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit, read_matrices,
@@ -215,7 +216,6 @@ fn facts(condition: &Condition, name: &str) -> Facts {
 
 fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
     let state = condition.flight_state();
-    let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
     let source = Provenance {
         variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
         note: None,
@@ -225,8 +225,8 @@ fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, Bundle
     };
     FoundModel {
         draft: ModelDraft { source: Some(source), ..ModelDraft::of(model) },
-        inputs: dataset.inputs().iter().map(label).collect(),
-        outputs: dataset.outputs().iter().map(label).collect(),
+        inputs: labels(dataset.inputs()),
+        outputs: labels(dataset.outputs()),
         facts,
         notes: model.source.iter().filter_map(|source| source.note.clone()).collect(),
     }
@@ -372,14 +372,9 @@ fn model(
     };
     FoundModel {
         draft: ModelDraft {
-            name: variable.clone().unwrap_or_default(),
-            origin: Origin::Identified { method: None, order: None },
-            matrices: [None, None, None, None],
-            timing: Timing::default(),
             response: Some(draft),
-            source: Some(Provenance { variable, ..Provenance::default() }),
-            states: Vec::new(),
-            bands: None,
+            source: Some(Provenance { variable: variable.clone(), ..Provenance::default() }),
+            ..bare_draft(variable.unwrap_or_default(), Origin::Identified { method: None, order: None })
         },
         inputs: vec![label(input)],
         outputs: vec![label(output)],

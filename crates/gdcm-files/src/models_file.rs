@@ -6,13 +6,15 @@ use std::path::Path;
 
 use gdcm_core::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
-use gdcm_core::dataset::{ConditionRecord, ModelDraft, Origin, Provenance};
+use gdcm_core::dataset::{Channel, ConditionRecord, ModelDraft, Origin, Provenance, Timing};
 use gdcm_core::identification::{CautionNote, EstimatePoint, Identification, PoleEstimate, ResponseEstimate};
 use gdcm_core::records::RecordChannels;
 use gdcm_core::units::neper_to_db;
 use gdcm_core::whole_number::whole;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
+use crate::corrections_file::without_empty;
 use crate::dataset_file::ModelText;
 use crate::file_error::FileError;
 use crate::json_text::{Format, Limited, Nested, list, write_compact};
@@ -80,6 +82,26 @@ pub(super) fn found_models(text: &[u8], path: &Path, budget: &ReadingBudget<'_>)
     models.into_iter().enumerate().map(|(index, model)| found(model, index)).collect()
 }
 
+/// The labels of a dataset's channels.
+pub(super) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
+    let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
+    channels.iter().map(label).collect()
+}
+
+/// A model of which nothing is known yet but what it is called and what it is of.
+pub(super) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
+    ModelDraft {
+        name,
+        origin,
+        matrices: [const { None }; 4],
+        timing: Timing::default(),
+        response: None,
+        source: None,
+        states: Vec::new(),
+        bands: None,
+    }
+}
+
 /// Names or units of channels.
 type Names = Limited<String, MOST_CHANNELS>;
 
@@ -131,25 +153,11 @@ struct IdentifiedText<'m> {
     version: u64,
     models: Vec<ModelText>,
     measured: MeasuredText,
-    poles: Vec<PoleText>,
-    validation: ValidationText<'m>,
-    records: Vec<RecordText<'m>>,
-    cautions: Vec<CautionText<'m>>,
+    poles: Vec<Value>,
+    validation: Value,
+    records: Vec<Value>,
+    cautions: Vec<Value>,
     reading: &'m [String],
-}
-
-#[derive(Serialize)]
-struct CautionText<'m> {
-    code: &'static str,
-    /// The one that it is about.
-    record: Option<&'m str>,
-    /// All that it is about.
-    records: &'m [String],
-    channel: Option<&'m str>,
-    /// Output and input.
-    pair: Option<&'m [String; 2]>,
-    band_rad_s: Option<[f64; 2]>,
-    text: &'m str,
 }
 
 #[derive(Serialize)]
@@ -162,43 +170,6 @@ struct MeasuredText {
     partial_coherence: Nested<3>,
     sd_db: Nested<3>,
     sd_deg: Nested<3>,
-}
-
-#[derive(Serialize)]
-struct PoleText {
-    re: f64,
-    im: f64,
-    sd: f64,
-    determined: bool,
-}
-
-#[derive(Serialize)]
-struct ValidationText<'m> {
-    /// Cost over its degrees of freedom of the records of the fit, and of those held out.
-    fit_per_dof: f64,
-    held_out_per_dof: Option<f64>,
-    /// The same where the model may move within its own uncertainty.
-    held_out_normalised: Option<f64>,
-    /// Share of each output of the held-out records that the model reproduces in time \[%\], and Theil's coefficient of it.
-    fit_percent: &'m [Option<f64>],
-    theil: &'m [Option<f64>],
-}
-
-#[derive(Serialize)]
-struct RecordText<'m> {
-    name: &'m str,
-    file: &'m str,
-    sha256: Option<&'m str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    variable: Option<&'m str>,
-    held_out: bool,
-    /// First and last time of the part of what the file holds that is the record.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    part_s: Option<[f64; 2]>,
-    /// First and last time of each part that was used.
-    used_s: &'m [[f64; 2]],
-    /// Why a part of it was not used.
-    why_not: Option<String>,
 }
 
 /// Adds what identification found as a file to `outputs`: the recommended model first, then CT-PBSID without refinement, then the
@@ -228,13 +199,15 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
             .collect(),
         measured: measured_text(&found.measured),
         poles: found.poles.iter().map(pole_text).collect(),
-        validation: ValidationText {
-            fit_per_dof: found.cost,
-            held_out_per_dof: found.held_out_cost,
-            held_out_normalised: found.held_out_normalised,
-            fit_percent: in_time.map_or(&[], |of| &of.fit_percent),
-            theil: in_time.map_or(&[], |of| &of.theil),
-        },
+        // Costs over degrees of freedom of the records of the fit and of those held out, these also where the model may move within its
+        // own uncertainty; share of each output of the held-out records that the model reproduces in time [%], and Theil's coefficient.
+        validation: json!({
+            "fit_per_dof": found.cost,
+            "held_out_per_dof": found.held_out_cost,
+            "held_out_normalised": found.held_out_normalised,
+            "fit_percent": in_time.map_or(&[][..], |of| &of.fit_percent),
+            "theil": in_time.map_or(&[][..], |of| &of.theil),
+        }),
         records: of.records.iter().enumerate().map(|(index, record)| record_text(found, index, record)).collect(),
         cautions: of.cautions.iter().map(caution_text).collect(),
         reading: of.reading,
@@ -262,35 +235,38 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     }
 }
 
-fn caution_text(of: &CautionNote) -> CautionText<'_> {
-    CautionText {
-        code: of.code,
-        record: if let [one] = of.records.as_slice() { Some(one) } else { None },
-        records: &of.records,
-        channel: of.channel.as_deref(),
-        pair: of.pair.as_ref(),
-        band_rad_s: of.band_rad_s,
-        text: &of.text,
-    }
+/// A caution: the one record that it is about, and all of them; output and input of its pair.
+fn caution_text(of: &CautionNote) -> Value {
+    json!({
+        "code": of.code,
+        "record": if let [one] = of.records.as_slice() { Some(one) } else { None },
+        "records": of.records,
+        "channel": of.channel,
+        "pair": of.pair,
+        "band_rad_s": of.band_rad_s,
+        "text": of.text,
+    })
 }
 
-fn pole_text(of: &PoleEstimate) -> PoleText {
-    PoleText { re: of.pole.re, im: of.pole.im, sd: of.sd_re.hypot(of.sd_im), determined: of.determined }
+fn pole_text(of: &PoleEstimate) -> Value {
+    json!({"re": of.pole.re, "im": of.pole.im, "sd": of.sd_re.hypot(of.sd_im), "determined": of.determined})
 }
 
-fn record_text<'m>(found: &Identification, index: usize, record: &'m ConditionRecord) -> RecordText<'m> {
+/// A record: first and last time of the part of the file that it is, and of each part of it that was used; why others were not.
+fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let gaps = found.record_uses.get(index).into_iter().flat_map(|used| &used.gaps);
     let gaps: Vec<String> = gaps.map(ToString::to_string).collect();
-    RecordText {
-        name: &record.name,
-        file: &record.file,
-        sha256: record.sha256.as_deref(),
-        variable: record.variable.as_deref(),
-        held_out: record.held_out,
-        part_s: record.part_s,
-        used_s: &record.used_s,
-        why_not: Some(gaps.join("; ")).filter(|words| !words.is_empty()),
-    }
+    let record = json!({
+        "name": record.name,
+        "file": record.file,
+        "sha256": record.sha256,
+        "variable": record.variable,
+        "held_out": record.held_out,
+        "part_s": record.part_s,
+        "used_s": record.used_s,
+        "why_not": Some(gaps.join("; ")).filter(|words| !words.is_empty()),
+    });
+    without_empty(record, &["variable", "part_s"])
 }
 
 #[cfg(test)]

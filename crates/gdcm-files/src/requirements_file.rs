@@ -73,28 +73,13 @@ pub fn write_requirements(
     outputs.persist()
 }
 
-const COLUMNS: [&str; 14] = [
-    "question",
-    "condition",
-    "airspeed_kt",
-    "role",
-    "model",
-    "output",
-    "input",
-    "mode",
-    "record",
-    "tolerance",
-    "quantity",
-    "value",
-    "low",
-    "high",
-];
-/// Heading of the last column.
-const REMARK: &str = "remark";
+/// What stands in the columns.
+const HEADING: &str =
+    "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
 /// A row for each number.
 fn write_rows(requirements: &Requirements, time_histories: &TimeHistories, file: &mut dyn Write) -> io::Result<()> {
-    let heading: Vec<String> = COLUMNS.into_iter().chain([REMARK]).map(str::to_owned).collect();
+    let heading: Vec<String> = HEADING.split(' ').map(str::to_owned).collect();
     let bandwidth = requirements.bandwidth.iter().flat_map(bandwidth_rows);
     let modes = requirements.modes.iter().flat_map(mode_rows);
     let summary = requirements.summary.iter().flat_map(summary_rows);

@@ -70,11 +70,13 @@ fn channels(channels: &[dataset::Channel]) -> Value {
     channels.iter().map(|channel| json!({"name": channel.name, "unit": channel.unit})).collect()
 }
 
-/// An object without those of its members that say nothing: null, false, and empty lists.
-pub(super) fn without_empty(mut object: Value, members: &[&str]) -> Value {
-    let says_nothing = |value: &Value| {
-        matches!(value, Value::Null | Value::Bool(false)) || value.as_array().is_some_and(|list| list.is_empty())
-    };
+/// Whether a member says nothing: null, false, and empty lists.
+pub(super) fn says_nothing(value: &Value) -> bool {
+    matches!(value, Value::Null | Value::Bool(false)) || value.as_array().is_some_and(|list| list.is_empty())
+}
+
+/// An object without those of its members that say nothing.
+pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     if let Value::Object(all) = &mut object {
         all.retain(|name, value| !(members.contains(&name.as_str()) && says_nothing(value)));
     }

@@ -21,6 +21,7 @@ use crate::json_text::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
 
 pub use corrections::corrections;
+pub(crate) use corrections::without_empty;
 
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;

@@ -7,7 +7,7 @@ use gdcm_core::dataset::{ConditionId, Pair};
 use gdcm_core::study::{AirspeedDifference, Analysis, PairScatter, SecondVariableTest, Uncertainty};
 use gdcm_core::uncertainty::{Bar, Scalar, VarianceDecomposition};
 
-use super::corrections::{ChannelNames, rows_of, without_empty};
+use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};
 
 /// A bar, with what one gain leaves over in the band. Of a gain the intervals are factors and the deviations those of its natural
 /// logarithm; of a delay \[s\].
@@ -15,25 +15,16 @@ fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Valu
     let told = |interval: Option<[f64; 2]>| {
         interval.map(|ends| ends.map(|end| if scalar.is_delay() { end } else { end.exp() }))
     };
-    let bar = json!({
-        "interval": told(bar.interval(level)),
-        "interval_identification": told(bar.inner_interval(level)),
-        "u_physics": bar.trim.map(|part| part.variance.sqrt()),
-        "u_identification": bar.identification.map(|part| part.variance.sqrt()),
-        "degrees_of_freedom": bar.degrees_of_freedom(),
-        "left_in_band": left_in_band,
-        "remarks": bar.remarks(),
-    });
-    let optional = [
-        "interval",
-        "interval_identification",
-        "u_physics",
-        "u_identification",
-        "degrees_of_freedom",
-        "left_in_band",
-        "remarks",
+    let members = [
+        ("interval", json!(told(bar.interval(level)))),
+        ("interval_identification", json!(told(bar.inner_interval(level)))),
+        ("u_physics", json!(bar.trim.map(|part| part.variance.sqrt()))),
+        ("u_identification", json!(bar.identification.map(|part| part.variance.sqrt()))),
+        ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
+        ("left_in_band", json!(left_in_band)),
+        ("remarks", json!(bar.remarks())),
     ];
-    without_empty(bar, &optional)
+    members.into_iter().filter(|(_, value)| !says_nothing(value)).collect()
 }
 
 /// The bar of a net gain.

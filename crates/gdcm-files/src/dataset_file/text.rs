@@ -358,21 +358,20 @@ impl RecordText {
 
     /// A record, as files say it.
     pub(crate) fn of(record: &ConditionRecord) -> Self {
-        let ConditionRecord {
-            name,
-            file,
-            variable,
-            sha256,
-            kind,
-            held_out,
-            used,
-            sample_time_s,
-            used_s,
-            part_s,
-            remedies,
-        } = record.clone();
-        let (kind, used, used_s) = (Some(kind.word().to_owned()), Some(used), Limited::some(used_s));
-        Self { name, file, variable, sha256, kind, held_out, used, sample_time_s, used_s, part_s, remedies }
+        let record = record.clone();
+        Self {
+            name: record.name,
+            file: record.file,
+            variable: record.variable,
+            sha256: record.sha256,
+            kind: Some(record.kind.word().to_owned()),
+            held_out: record.held_out,
+            used: Some(record.used),
+            sample_time_s: record.sample_time_s,
+            used_s: Limited::some(record.used_s),
+            part_s: record.part_s,
+            remedies: record.remedies,
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use gdcm_core::assembly::{ChannelLabel, Facts, FoundModel};
+use gdcm_core::assembly::{Facts, FoundModel};
 use gdcm_core::correction::{ChannelCorrection, CorrectedModel, LeadPrice};
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
@@ -16,7 +16,7 @@ use gdcm_core::units::{number, telling};
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
 use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
 use crate::mat;
-use crate::models_file::write_models;
+use crate::models_file::{bare_draft, labels, write_models};
 use crate::npy::write_npz;
 use crate::variables::{TextArray, Value, Variable};
 
@@ -265,21 +265,15 @@ impl ExportedModel {
 
 /// The models under the names "condition 10, nominal"; their notes say what was done to them and how exact it is.
 fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> {
-    let labels = |channels: &[Channel]| -> Vec<ChannelLabel> {
-        let label =
-            |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
-        channels.iter().map(label).collect()
-    };
     let found = |model: &ExportedModel| FoundModel {
         draft: ModelDraft {
-            name: format!("condition {}, {}", model.condition, model.name),
-            origin: Origin::Perturbed { perturbation: None },
-            matrices: [model.model.a(), model.model.b(), model.model.c(), model.model.d()].map(|of| Some(of.clone())),
+            matrices: matrices(model).map(|(_, of)| Some(of.clone())),
             timing: model.model.timing().clone(),
-            response: None,
-            source: None,
             states: model.states.clone(),
-            bands: None,
+            ..bare_draft(
+                format!("condition {}, {}", model.condition, model.name),
+                Origin::Perturbed { perturbation: None },
+            )
         },
         inputs: labels(dataset.inputs()),
         outputs: labels(dataset.outputs()),

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gdcm_core::correction::Channel;
 use gdcm_core::couplings::CouplingMatrices;
-use gdcm_core::schedule::Regression;
+use gdcm_core::schedule::{Airspeeds, Regression};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::{Environment, Value, context};
 
@@ -134,10 +134,7 @@ impl Language {
             heading => of.heading(&of.notes_of_curves()),
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
-            scaled => match airspeeds.half_range_kt {
-                0.0 => number(0.0),
-                half_range_kt => format!("(a - ({})) / {}", number(airspeeds.mean_kt), number(half_range_kt)),
-            },
+            scaled => scaled(airspeeds),
             second,
             lead,
             couplings => of.couplings.map(|couplings| self.couplings(couplings)),
@@ -166,10 +163,7 @@ impl Language {
         context! {
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
-            scaled => match airspeeds.half_range_kt {
-                0.0 => number(0.0),
-                half_range_kt => format!("(a - ({})) / {}", number(airspeeds.mean_kt), number(half_range_kt)),
-            },
+            scaled => scaled(airspeeds),
             mixing => (0..inputs).map(mixing).collect::<Vec<_>>(),
             feedback => (0..inputs).map(feedback).collect::<Vec<_>>(),
             inputs,
@@ -232,6 +226,14 @@ impl Language {
             value = format!("{}({}({value}, {}), {})", self.max, self.min, figures(upper), number(0.0));
         }
         context! { arrays, value }
+    }
+}
+
+/// The scaled airspeed, as every language writes it.
+fn scaled(airspeeds: &Airspeeds) -> String {
+    match airspeeds.half_range_kt {
+        0.0 => number(0.0),
+        half_range_kt => format!("(a - ({})) / {}", number(airspeeds.mean_kt), number(half_range_kt)),
     }
 }
 

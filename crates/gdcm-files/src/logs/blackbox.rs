@@ -237,18 +237,10 @@ impl Flight {
         }
         let seconds: Vec<f64> = self.modes.0.iter().map(|time| time * 1e-6).collect();
         // `flightModeFlags`: 1 is angle, 2 is horizon, neither is acro.
-        let named = |flags: f64| {
-            let flags = flags as u32;
-            Some(
-                if flags & 2 != 0 {
-                    "angle"
-                } else if flags & 4 != 0 {
-                    "horizon"
-                } else {
-                    "acro"
-                }
-                .to_owned(),
-            )
+        let named = |flags: f64| match flags as u32 {
+            flags if flags & 2 != 0 => Some("angle".to_owned()),
+            flags if flags & 4 != 0 => Some("horizon".to_owned()),
+            _ => Some("acro".to_owned()),
         };
         let modes = mode_spans(&seconds, self.modes.1, named);
         notes.extend(modes_note(&modes));
@@ -259,25 +251,17 @@ impl Flight {
 impl Heading {
     /// The frame of a letter; none where it is none, or damaged.
     fn parse(&self, kind: u8, bits: &mut Bits<'_>, before: &[Option<Vec<i64>>; 2]) -> Option<Frame> {
-        let fields = |kind| self.frame(kind);
-        match kind {
-            b'I' => {
-                let fields = fields(b'I')?;
-                Some(Frame::Main(fields.values(fields.differences(bits)?, [None, None], self.known)))
-            }
-            b'P' => {
-                let (fields, last) = (fields(b'P')?, before[0].as_ref()?);
-                let differences = fields.differences(bits)?;
-                Some(Frame::Main(fields.values(differences, [Some(last), before[1].as_ref()], self.known)))
-            }
-            b'S' => {
-                let fields = fields(b'S')?;
-                Some(Frame::Slow(fields.values(fields.differences(bits)?, [None, None], self.known)))
-            }
-            b'G' | b'H' => fields(kind)?.differences(bits).map(|_| Frame::Other),
-            b'E' => event(bits),
-            _ => None,
+        if kind == b'E' {
+            return event(bits);
         }
+        let fields = self.frame(kind)?;
+        let before = if kind == b'P' { [Some(before[0].as_ref()?), before[1].as_ref()] } else { [None, None] };
+        let differences = fields.differences(bits)?;
+        Some(match kind {
+            b'G' | b'H' => Frame::Other,
+            b'S' => Frame::Slow(fields.values(differences, before, self.known)),
+            _ => Frame::Main(fields.values(differences, before, self.known)),
+        })
     }
 }
 

@@ -268,44 +268,33 @@ pub(super) struct Element<'b> {
     pub(super) whole: bool,
 }
 
-impl DataKind {
-    const ALL: [Self; 15] = [
-        Self::I8,
-        Self::U8,
-        Self::I16,
-        Self::U16,
-        Self::I32,
-        Self::U32,
-        Self::F32,
-        Self::F64,
-        Self::I64,
-        Self::U64,
-        Self::Matrix,
-        Self::Packed,
-        Self::Utf8,
-        Self::Utf16,
-        Self::Utf32,
-    ];
+/// Every kind of data, with how its numbers are stored; of matrices and packed data there are none.
+const KINDS: [(DataKind, Option<(NumberClass, usize)>); 15] = [
+    (DataKind::I8, Some((NumberClass::Signed, 1))),
+    (DataKind::U8, Some((NumberClass::Unsigned, 1))),
+    (DataKind::I16, Some((NumberClass::Signed, 2))),
+    (DataKind::U16, Some((NumberClass::Unsigned, 2))),
+    (DataKind::I32, Some((NumberClass::Signed, 4))),
+    (DataKind::U32, Some((NumberClass::Unsigned, 4))),
+    (DataKind::F32, Some((NumberClass::Float, 4))),
+    (DataKind::F64, Some((NumberClass::Float, 8))),
+    (DataKind::I64, Some((NumberClass::Signed, 8))),
+    (DataKind::U64, Some((NumberClass::Unsigned, 8))),
+    (DataKind::Matrix, None),
+    (DataKind::Packed, None),
+    (DataKind::Utf8, Some((NumberClass::Unsigned, 1))),
+    (DataKind::Utf16, Some((NumberClass::Unsigned, 2))),
+    (DataKind::Utf32, Some((NumberClass::Unsigned, 4))),
+];
 
+impl DataKind {
     fn of(number: u32) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| *kind as u32 == number)
+        KINDS.iter().map(|(kind, _)| *kind).find(|kind| *kind as u32 == number)
     }
 
-    /// How its numbers are stored; of matrices and packed data there are none.
+    /// How its numbers are stored, where it holds any.
     pub(super) fn stored(self, order: ByteOrder) -> Option<StoredNumber> {
-        let (class, size) = match self {
-            Self::I8 => (NumberClass::Signed, 1),
-            Self::I16 => (NumberClass::Signed, 2),
-            Self::I32 => (NumberClass::Signed, 4),
-            Self::I64 => (NumberClass::Signed, 8),
-            Self::U8 | Self::Utf8 => (NumberClass::Unsigned, 1),
-            Self::U16 | Self::Utf16 => (NumberClass::Unsigned, 2),
-            Self::U32 | Self::Utf32 => (NumberClass::Unsigned, 4),
-            Self::U64 => (NumberClass::Unsigned, 8),
-            Self::F32 => (NumberClass::Float, 4),
-            Self::F64 => (NumberClass::Float, 8),
-            Self::Matrix | Self::Packed => return None,
-        };
+        let (class, size) = KINDS.iter().find(|(kind, _)| *kind == self)?.1?;
         StoredNumber::new(class, size, order == ByteOrder::Big)
     }
 }

@@ -95,7 +95,7 @@ impl Reader<'_> {
     }
 
     fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
-        let marks = MatlabAttributes::new(&dataset.attrs().map_err(|error| fault(&error, path))?);
+        let marks = MatlabAttributes::of(dataset.attrs(), path)?;
         let order = if marks.class.is_some() { Order::Columns } else { Order::Rows };
         let elements = Elements::read(dataset, order, path, self.budget)?;
         if marks.empty {
@@ -275,18 +275,19 @@ struct MatlabAttributes {
 }
 
 impl MatlabAttributes {
-    fn new(attributes: &HashMap<String, AttrValue>) -> Self {
+    fn of(attributes: Result<HashMap<String, AttrValue>, Error>, path: &str) -> Result<Self, VariableFault> {
+        let attributes = attributes.map_err(|error| fault(&error, path))?;
         let number = |name| attributes.get(name).and_then(AttrValue::as_u64);
         let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
         let fields = attributes.get("MATLAB_fields").and_then(AttrValue::as_strings);
-        Self {
+        Ok(Self {
             class: class.map(str::to_owned),
             empty: number("MATLAB_empty").is_some_and(|empty| empty != 0)
                 || attributes.contains_key("OCTAVE_EMPTY_MATRIX"),
             sparse: number("MATLAB_sparse"),
             fields: fields.unwrap_or_default().to_vec(),
             decode: number("MATLAB_object_decode").unwrap_or(0),
-        }
+        })
     }
 
     /// The class, or nothing.
@@ -327,7 +328,7 @@ fn without_elements(value: &mut Value) {
 
 /// The value of a group.
 fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
-    let marks = MatlabAttributes::new(&group.attrs().map_err(|error| fault(&error, path))?);
+    let marks = MatlabAttributes::of(group.attrs(), path)?;
     let mut members = members(group, path, reader.budget)?;
     if let Some(rows) = marks.sparse {
         return Ok(Value::Array(sparse(rows, &marks, &members, path, reader.budget)?));
@@ -369,9 +370,8 @@ fn is_array(marks: &MatlabAttributes, members: &[(String, Object)], path: &str) 
     }
     for (_, object) in members {
         let Object::Dataset(dataset) = object else { return Ok(false) };
-        let failed = |error| fault(&error, path);
-        let marked = MatlabAttributes::new(&dataset.attrs().map_err(failed)?).class.is_some();
-        if marked || !is_reference(&dataset.datatype().map_err(failed)?) {
+        let marked = MatlabAttributes::of(dataset.attrs(), path)?.class.is_some();
+        if marked || !is_reference(&dataset.datatype().map_err(|error| fault(&error, path))?) {
             return Ok(false);
         }
     }

@@ -185,6 +185,8 @@ impl Parts for Lines<'_> {
             if row >= shape[0] || column >= shape[1] {
                 return Err(self.wrong(variable, "a number lies outside the matrix"));
             }
+            // Vectors grow by doubling.
+            self.budget.take(1, 48, variable)?;
             rows.push(row);
             columns.push(column);
             numbers.extend(self.numbers(element, 1, variable)?);

@@ -11,8 +11,9 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use gdcm_core::assembly::{Dimension, FoundModel, PhysicalUnit};
-use gdcm_core::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft, Timing};
+use gdcm_core::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft};
 
+use crate::models_file::bare_draft;
 use crate::recognise::record::{Record, array_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, texts_of};
 use crate::recognise::state_space::{is_state_space, is_transfer_function, state_spaces, transfer_function};
 use crate::variables::{Array, ReadingBudget, StructArray, Value, Variable, VariableFault};
@@ -271,14 +272,9 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
     let variable = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
     Ok(FoundModel {
         draft: ModelDraft {
-            name: variable.clone().unwrap_or_default(),
-            origin: Origin::Identified { method: None, order: None },
-            matrices: [None, None, None, None],
-            timing: Timing::default(),
             response: Some(response),
-            source: Some(Provenance { variable, ..Provenance::default() }),
-            states: Vec::new(),
-            bands: None,
+            source: Some(Provenance { variable: variable.clone(), ..Provenance::default() }),
+            ..bare_draft(variable.unwrap_or_default(), Origin::Identified { method: None, order: None })
         },
         inputs: inputs_of(record, inputs),
         outputs: outputs_of(record, outputs),

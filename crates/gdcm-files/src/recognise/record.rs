@@ -200,12 +200,11 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
 /// Sample time and delays; those of MATLAB's discrete-time models are counted in samples.
 pub(super) fn timing_of(record: &Record<'_>, (inputs, outputs): (usize, usize)) -> Result<Timing, String> {
     let sample_time_s = sample_time_of(record)?;
-    refuse_other_delays(record)?;
-    let delay_record = match record.get(&["Delay"]) {
-        Some(Value::Struct(records)) => Some(Record::of_struct(records, 0, None, 0)),
-        _ => None,
+    let delay = match record.get(&["Delay"]) {
+        Some(Value::Struct(records)) => Record::of_struct(records, 0, None, 0),
+        _ => Record::default(),
     };
-    let of_delay = |names: &[&str]| delay_record.as_ref().and_then(|delays| delays.get(names));
+    refuse_other_delays(record, &delay)?;
     let in_samples = sample_time_s.filter(|_| record.get(&["input_delays_s", "output_delays_s"]).is_none());
     let delays = |name: &str, value: Option<&Value>, count: usize| -> Result<Option<Vec<f64>>, String> {
         let Some(value) = value else { return Ok(None) };
@@ -225,8 +224,8 @@ pub(super) fn timing_of(record: &Record<'_>, (inputs, outputs): (usize, usize)) 
             None => Ok(Some(delays)),
         }
     };
-    let input = record.get(&["InputDelay", "input_delays_s"]).or_else(|| of_delay(&["Input"]));
-    let output = record.get(&["OutputDelay", "output_delays_s"]).or_else(|| of_delay(&["Output"]));
+    let input = record.get(&["InputDelay", "input_delays_s"]).or_else(|| delay.get(&["Input"]));
+    let output = record.get(&["OutputDelay", "output_delays_s"]).or_else(|| delay.get(&["Output"]));
     Ok(Timing {
         sample_time_s,
         input_delays_s: delays("input delays", input, inputs)?,
@@ -249,11 +248,7 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
 }
 
 /// Delays between single channels, and inside the model, are not what a gain and a delay of each channel can have.
-fn refuse_other_delays(record: &Record<'_>) -> Result<(), String> {
-    let delay = match record.get(&["Delay"]) {
-        Some(Value::Struct(records)) => Record::of_struct(records, 0, None, 0),
-        _ => Record::default(),
-    };
+fn refuse_other_delays(record: &Record<'_>, delay: &Record<'_>) -> Result<(), String> {
     let found = [
         ("internal", record.get(&["InternalDelay"]).or_else(|| delay.get(&["Internal"]))),
         ("input-output", record.get(&["IODelay"]).or_else(|| delay.get(&["IO"]))),

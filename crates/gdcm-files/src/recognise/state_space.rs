@@ -6,6 +6,7 @@ use gdcm_core::dataset::{ModelDraft, Origin, Provenance, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
 
+use crate::models_file::bare_draft;
 use crate::recognise::record::{
     Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, page_of, pages_of,
     states_of, timing_of,
@@ -96,14 +97,11 @@ pub(super) fn found(
     let source = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
     FoundModel {
         draft: ModelDraft {
-            name: variable.to_owned(),
-            origin: origin_of(record),
             matrices: [a, b, c, d].map(Some),
             timing,
-            response: None,
             source: Some(Provenance { variable: source, ..Provenance::default() }),
             states,
-            bands: None,
+            ..bare_draft(variable.to_owned(), origin_of(record))
         },
         inputs,
         outputs,
@@ -131,22 +129,16 @@ fn at_most(count: usize, of: &str, place: &str) -> Result<(), String> {
 
 fn check_shapes(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, d: &DMatrix<f64>) -> Result<(), String> {
     let n = a.nrows();
-    let wrong = |name: &str, expected: (usize, usize), found: (usize, usize)| {
-        Err(format!("{name}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1))
-    };
     if a.ncols() != n {
         return Err(format!("A: expected a square matrix, found {} x {}", n, a.ncols()));
     }
-    if b.nrows() != n {
-        return wrong("B", (n, b.ncols()), b.shape());
+    let expected = [("B", b, (n, b.ncols())), ("C", c, (c.nrows(), n)), ("D", d, (c.nrows(), b.ncols()))];
+    match expected.iter().find(|(_, matrix, shape)| matrix.shape() != *shape) {
+        Some((name, matrix, (rows, columns))) => {
+            Err(format!("{name}: expected {rows} x {columns}, found {} x {}", matrix.nrows(), matrix.ncols()))
+        }
+        None => Ok(()),
     }
-    if c.ncols() != n {
-        return wrong("C", (c.nrows(), n), c.shape());
-    }
-    if d.shape() != (c.nrows(), b.ncols()) {
-        return wrong("D", (c.nrows(), b.ncols()), d.shape());
-    }
-    Ok(())
 }
 
 // Models with a matrix E in front of the derivatives.

@@ -30,12 +30,16 @@ pub struct TextTable {
 }
 
 impl TextTable {
+    /// The name of a column, where the text gives one.
+    pub(super) fn name(&self, column: usize) -> Option<&str> {
+        self.names.as_ref()?.get(column).map(String::as_str)
+    }
+
     /// The headings of the columns, one for each: "omega \[rad/s\]"; empty where there is none.
     pub fn headings(&self) -> Vec<String> {
-        let name = |column: usize| self.names.as_ref().and_then(|names| names.get(column)).map_or("", String::as_str);
         let heading = |(column, unit): (usize, &Option<String>)| match unit {
-            Some(unit) => format!("{} [{unit}]", name(column)).trim().to_owned(),
-            None => name(column).to_owned(),
+            Some(unit) => format!("{} [{unit}]", self.name(column).unwrap_or_default()).trim().to_owned(),
+            None => self.name(column).unwrap_or_default().to_owned(),
         };
         self.units.iter().enumerate().map(heading).collect()
     }
@@ -260,8 +264,8 @@ struct Count {
 
 /// The lines of numbers that are found if the lines are made in one way.
 struct Tally {
-    separator: Separator,
-    decimal_comma: bool,
+    /// Its columns are not counted yet.
+    layout: Layout,
     widths: BTreeMap<usize, Count>,
     lines: usize,
 }
@@ -272,8 +276,9 @@ impl Layout {
     pub(super) fn recognise(text: &str, budget: &ReadingBudget) -> Result<Option<Self>, VariableFault> {
         let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
         for decimal_comma in [false, true] {
-            let tally = |&separator| Tally { separator, decimal_comma, widths: BTreeMap::new(), lines: 0 };
-            tallies.extend(Separator::ALL.iter().map(tally));
+            let layout = |separator| Layout { separator, decimal_comma, columns: 0, trailing: false };
+            let tally = |separator| Tally { layout: layout(separator), widths: BTreeMap::new(), lines: 0 };
+            tallies.extend(Separator::ALL.map(tally));
         }
         for (_, line) in lines(text) {
             budget.work(1, "")?;
@@ -302,7 +307,14 @@ impl Layout {
     /// Number of cells of a line if all are numbers or say that there is none, and at least one is a number; and whether the last
     /// is empty.
     pub(super) fn width(self, line: &str) -> Option<(usize, bool)> {
-        width(self.separator, self.decimal_comma, line)
+        let (mut width, mut numbers, mut empty) = (0, 0, false);
+        for cell in self.cells(line) {
+            let number = cell_number(&cell, self.decimal_comma)?;
+            width += 1;
+            numbers += usize::from(!number.is_nan());
+            empty = cell.trim().is_empty();
+        }
+        (numbers > 0).then_some((width, empty))
     }
 
     /// Whether a line of so many cells fits: one more, which is empty, stands behind a separator at the end. Where all lines end
@@ -315,7 +327,7 @@ impl Layout {
 
 impl Tally {
     fn count(&mut self, line: &str) {
-        if let Some((width, ends_empty)) = width(self.separator, self.decimal_comma, line) {
+        if let Some((width, ends_empty)) = self.layout.width(line) {
             let count = self.widths.entry(width).or_default();
             count.lines += 1;
             count.ending_empty += usize::from(ends_empty);
@@ -328,20 +340,8 @@ impl Tally {
         let (&width, count) = self.widths.iter().max_by_key(|(width, count)| (count.lines, **width))?;
         let trailing = count.ending_empty == count.lines && width > 1;
         let columns = if trailing { width - 1 } else { width };
-        let Self { separator, decimal_comma, .. } = *self;
-        Some((count.lines, Layout { separator, decimal_comma, columns, trailing }))
+        Some((count.lines, Layout { columns, trailing, ..self.layout }))
     }
-}
-
-fn width(separator: Separator, decimal_comma: bool, line: &str) -> Option<(usize, bool)> {
-    let (mut width, mut numbers, mut empty) = (0, 0, false);
-    for cell in separator.cells(without_comment(line)) {
-        let number = cell_number(&cell, decimal_comma)?;
-        width += 1;
-        numbers += usize::from(!number.is_nan());
-        empty = cell.trim().is_empty();
-    }
-    (numbers > 0).then_some((width, empty))
 }
 
 /// The text of a line of comment behind its mark.

@@ -68,9 +68,8 @@ pub(crate) struct Unrecognised {
 impl FrequencyColumns {
     /// Recognises the columns by their names and units; what these do not say is asked for.
     pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
-        let name = |index: usize| table.names.as_ref().and_then(|names| names.get(index)).map_or("", String::as_str);
         let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
-        let meaning = |index: usize| ColumnMeaning::of(name(index), unit(index));
+        let meaning = |index: usize| ColumnMeaning::of(table.name(index).unwrap_or_default(), unit(index));
         let meanings: Vec<ColumnMeaning> = (0..table.columns.len()).map(meaning).collect();
         let mut reading = Recognition { table, meanings: &meanings, notes: Vec::new(), unsaid: Vec::new() };
         let frequency = reading.frequency()?;
@@ -327,7 +326,7 @@ impl Recognition<'_> {
 
 /// A column in words: its number from 1, and its name.
 fn place(table: &TextTable, column: usize) -> String {
-    match table.names.as_ref().and_then(|names| names.get(column)) {
+    match table.name(column) {
         Some(name) => format!("column {} (\"{name}\")", column + 1),
         None => format!("column {}", column + 1),
     }

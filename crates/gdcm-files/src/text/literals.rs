@@ -96,7 +96,7 @@ impl<'t> Reading<'t, '_> {
             }
             [] => self.pass_over(begin, start, "is not understood"),
             [name, ..] => {
-                let changes_part = changes_part(&self.scanner);
+                let changes_part = self.scanner.changes_part();
                 self.scanner = behind;
                 if !changes_part {
                     return self.pass_over(begin, start, "is not run");
@@ -117,7 +117,7 @@ impl<'t> Reading<'t, '_> {
 
     /// "[a, b] = …": results of a function, which is not run.
     fn results(&mut self, begin: Position, start: usize) -> Result<(), VariableFault> {
-        let line = self.scanner.rest().split(['\n', '\r']).next().unwrap_or_default();
+        let line = self.scanner.rest_of_line();
         let names = line.split_once(']').filter(|(_, behind)| {
             let behind = behind.trim_start();
             behind.starts_with('=') && !behind.starts_with("==")
@@ -405,31 +405,6 @@ impl<'t> Reading<'t, '_> {
         self.budget.take(memory_of(value, 0)?, 1, "")?;
         Ok(value.clone())
     }
-}
-
-/// Whether what follows a name sets a part of it: "+= 1", "++", "(2,1) = 3".
-fn changes_part(scanner: &Scanner<'_>) -> bool {
-    let line = scanner.rest().split(['\n', '\r']).next().unwrap_or_default();
-    let Some(sign) = line.chars().next() else { return false };
-    if "+-*/^".contains(sign) {
-        return line[1..].starts_with('=')
-            || line[1..].strip_prefix(sign).is_some_and(|rest| rest.trim_start().is_empty() || rest.starts_with(';'));
-    }
-    let close = match sign {
-        '(' => ')',
-        '{' => '}',
-        _ => return false,
-    };
-    let mut open = 0_usize;
-    for (at, character) in line.char_indices() {
-        open = open + usize::from(character == sign) - usize::from(character == close);
-        if open == 0 {
-            let behind = line[at + 1..].trim_start();
-            let behind = behind.trim_start_matches(|c: char| c == '.' || is_of_word(c)).trim_start();
-            return behind.starts_with('=') && !behind.starts_with("==");
-        }
-    }
-    false
 }
 
 /// The arguments under the names of fields, behind them the sample time Ts \[s\], where it is said, and names and values in turn.

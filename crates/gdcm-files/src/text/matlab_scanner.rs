@@ -64,6 +64,10 @@ impl<'t> Scanner<'t> {
         &self.text[self.at..]
     }
 
+    pub(super) fn rest_of_line(&self) -> &'t str {
+        self.rest().split(['\n', '\r']).next().unwrap_or_default()
+    }
+
     pub(super) fn peek(&self) -> Option<char> {
         self.rest().chars().next()
     }
@@ -120,7 +124,7 @@ impl<'t> Scanner<'t> {
 
     /// Whether the rest of the line is a mark of comment and this bracket, which open or close a comment of several lines.
     fn is_block_mark(&self, bracket: char) -> bool {
-        let line = self.rest().split(['\n', '\r']).next().unwrap_or_default().trim();
+        let line = self.rest_of_line().trim();
         line.strip_prefix(['%', '#']).is_some_and(|rest| rest.strip_prefix(bracket) == Some(""))
     }
 
@@ -268,5 +272,32 @@ impl<'t> Scanner<'t> {
                 Err(VariableFault::line("", line, what))
             }
         }
+    }
+
+    /// Whether what follows a name sets a part of it: "+= 1", "++", "(2,1) = 3".
+    pub(super) fn changes_part(&self) -> bool {
+        let line = self.rest_of_line();
+        let Some(sign) = line.chars().next() else { return false };
+        if "+-*/^".contains(sign) {
+            return line[1..].starts_with('=')
+                || line[1..]
+                    .strip_prefix(sign)
+                    .is_some_and(|rest| rest.trim_start().is_empty() || rest.starts_with(';'));
+        }
+        let close = match sign {
+            '(' => ')',
+            '{' => '}',
+            _ => return false,
+        };
+        let mut open = 0_usize;
+        for (at, character) in line.char_indices() {
+            open = open + usize::from(character == sign) - usize::from(character == close);
+            if open == 0 {
+                let behind = line[at + 1..].trim_start();
+                let behind = behind.trim_start_matches(|c: char| c == '.' || is_of_word(c)).trim_start();
+                return behind.starts_with('=') && !behind.starts_with("==");
+            }
+        }
+        false
     }
 }

@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use crate::mat::FieldPath;
 use crate::mat::level5::{ByteOrder, name_of};
 use crate::mat::matrix::unread_because;
+use crate::strides::count;
 use crate::variables::{ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault};
 
 /// The objects of a file.
@@ -302,12 +303,8 @@ impl Reference {
         let (shape, rest) = rest.split_at_checked(*dimensions as usize)?;
         let shape: Vec<usize> = shape.iter().map(|&length| length as usize).collect();
         let (&class, objects) = rest.split_last()?;
-        let count = shape.iter().try_fold(1_usize, |product, &length| product.checked_mul(length))?;
-        let sides = shape.iter().try_fold(1_usize, |product, &length| product.checked_mul(length.max(1)));
-        if shape.len() < 2 || sides.is_none() || count != objects.len() {
-            return None;
-        }
-        Some(Self { shape, objects: objects.to_vec(), class })
+        let is_whole = shape.len() >= 2 && count(&shape)? == objects.len();
+        is_whole.then(|| Self { shape, objects: objects.to_vec(), class })
     }
 
     /// The reference that a value is: a column of whole numbers.

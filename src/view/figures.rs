@@ -5,7 +5,7 @@ use egui::{Button, Role, Ui};
 use gdcm_core::study::Table;
 use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 
-use super::plot::{BodeView, Pane};
+use super::plot::{BodeView, PANES};
 use super::views::{
     assessed_pairs, assessment_choice, bode_options, condition_source, net_gain_pairs, requirement_tables,
     shown_couplings, shown_over_time, shown_requirements,
@@ -55,13 +55,15 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         _ => Vec::new(),
     };
     let (measure, across) = display.channel_values;
-    let ranges = match view {
-        View::Bode => chosen(&display.bode),
-        View::Error => chosen(&display.error),
-        View::Across => chosen(&display.across),
-        _ => BodeOptions::default(),
+    let plot = match view {
+        View::Bode => Some(&display.bode),
+        View::Error => Some(&display.error),
+        View::Across => Some(&display.across),
+        _ => None,
     };
-    let bode = BodeOptions { omega: ranges.omega, values: ranges.values, ..bode_options(state) };
+    // The parts of the axes that the engineer chose to see.
+    let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
+    let bode = BodeOptions { omega: plot.and_then(BodeView::chosen_omega), values, ..bode_options(state) };
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
     let requirements = shown_requirements(state, kind);
@@ -78,12 +80,6 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         over_time,
         ..usual
     })
-}
-
-/// The parts of the axes that the engineer chose to see.
-fn chosen(view: &BodeView) -> BodeOptions {
-    let values = [Pane::Magnitude, Pane::Phase].map(|pane| view.chosen_values(pane));
-    BodeOptions { omega: view.chosen_omega(), values, ..BodeOptions::default() }
 }
 
 /// The tables that a view shows in place of a figure; none where it shows one.

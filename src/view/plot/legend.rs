@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use egui::{Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
+use gdcm_files::figure::Dash;
+
 use super::bode::BodeEvent;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
@@ -140,7 +142,12 @@ impl Chips<'_> {
             }
         }
         if let Some(shown) = self.bands {
-            let style = CurveStyle { color: palette.identified.gamma_multiply(0.45), width: 7.0, ..BAND_SAMPLE };
+            let style = CurveStyle {
+                color: palette.identified.gamma_multiply(0.45),
+                width: 7.0,
+                dash: Dash::Solid,
+                length: 0.0,
+            };
             let name = format!("Show the band of 95 %{}", self.plot);
             let response = row.chip_ui(ui, (self.bands_text(), &name), (Some((style, shown)), false), palette);
             if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
@@ -163,9 +170,6 @@ impl Chips<'_> {
         if self.is_tight { "95 %" } else { "band of 95 %" }
     }
 }
-
-const BAND_SAMPLE: CurveStyle =
-    CurveStyle { color: Color32::TRANSPARENT, width: 0.0, dash: gdcm_files::figure::Dash::Solid, length: 0.0 };
 
 /// Where the next chip goes.
 struct Row {

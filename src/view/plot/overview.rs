@@ -11,10 +11,11 @@ use gdcm_core::dataset::Pair;
 use gdcm_files::figure::{Range, decimals};
 
 use super::axes::{caption_font, message_ui};
+use super::bode::PANES;
 use super::curve_menu::{CurveWish, model_wishes_ui};
 use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane, Pixel, curve_lines};
 use super::navigation::nearest;
-use crate::view::controls::{elided, painted_text};
+use crate::view::controls::{elided, row_text};
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 const HEADER: Vec2 = vec2(52.0, 22.0);
@@ -76,7 +77,6 @@ pub enum OverviewEvent {
 pub struct OverviewView {
     /// Whether phases are shown below magnitudes.
     pub show_phase: bool,
-    places: Vec<(Pair, Rect)>,
     sketches: BTreeMap<(Pair, Pane), Sketch>,
     /// The curve whose menu is open, and in which cell.
     menu_of: Option<(Pair, CurveId)>,
@@ -86,24 +86,24 @@ impl OverviewView {
     /// The curve of a cell that the pointer means, if it means one.
     fn curve_at<'c>(&self, cell: &OverviewCell<'c>, pointer: Pos2) -> Option<&'c BodeCurve> {
         let hit = |pane: Pane| {
-            let transform = self.sketches.get(&(cell.pair, pane))?.transform()?;
+            let transform = self.sketches.get(&(cell.pair, pane))?.transform?;
             let is_inside = transform.frame().contains(pointer);
             nearest(cell.curves, pane, pointer, &transform).filter(|_| is_inside)
         };
-        let hits = [Pane::Magnitude, Pane::Phase].into_iter().filter_map(hit);
+        let hits = PANES.into_iter().filter_map(hit);
         let hit = hits.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
         cell.curves.get(hit.curve)
     }
 
     /// Where a magnitude of a response is on the screen: decades of frequency and decibels.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
-        let transform = self.sketches.get(&(pair, Pane::Magnitude))?.transform()?;
+        let transform = self.sketches.get(&(pair, Pane::Magnitude))?.transform?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// The middle of a response's cell on the screen.
+    /// The middle of the magnitude of a response on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
-        self.places.iter().find(|(placed, _)| *placed == pair).map(|(_, rect)| rect.center())
+        Some(self.sketches.get(&(pair, Pane::Magnitude))?.transform?.frame().center())
     }
 }
 
@@ -119,7 +119,6 @@ pub fn overview_ui(
     // Frequencies ascend: the ends are enough.
     let ends = curves.flat_map(|curve| [curve.omega.first(), curve.omega.last()]).flatten();
     let log_omega = Range::of(ends.map(|omega| omega.log10()));
-    view.places.clear();
     let (Some(log_omega), false, false) = (log_omega, scene.inputs.is_empty(), scene.outputs.is_empty()) else {
         message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
         return Vec::new();
@@ -130,8 +129,7 @@ pub fn overview_ui(
         headers_ui(ui, scene, view, &table, palette);
         for cell in scene.cells {
             let place = table.cell(cell.pair);
-            view.places.push((cell.pair, place));
-            let title = title(scene, cell.pair);
+            let title = format!("{} → {}", scene.inputs[cell.pair.input], scene.outputs[cell.pair.output]);
             let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
             let response = cell_ui(ui, scene, (cell, place, &name), view, log_omega, palette);
             events.extend(cell_events((&response, &name), cell, view));
@@ -200,17 +198,14 @@ fn cell_ui(
             ranges.push(sketch.range_text(pane));
         }
         if has_texts {
-            head_ui(ui, head.shrink2(vec2(3.0, 0.0)), &ranges.join(" · "), &cell.note, palette);
+            // What the heights of the cell are, for want of an axis, and its note: over its curves, not on them.
+            let head = head.shrink2(vec2(3.0, 0.0));
+            let note = row_text(ui, head, -0.01, &cell.note, SMALL_SIZE, palette.text);
+            let ranges = elided(ui, &ranges.join(" · "), note.left() - head.left() - 6.0, SMALL_SIZE);
+            row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
         }
     }
     response.on_hover_cursor(CursorIcon::PointingHand)
-}
-
-/// What the heights of a cell are, for want of an axis, and its note: over its curves, not on them.
-fn head_ui(ui: &Ui, head: Rect, ranges: &str, note: &str, palette: &Palette) {
-    let note = painted_text(ui, head, -0.01, note, caption_font(), palette.text);
-    let room = note.left() - head.left() - 6.0;
-    painted_text(ui, head, 0.0, &elided(ui, ranges, room, SMALL_SIZE), caption_font(), palette.dim_text);
 }
 
 /// What was done in a cell: a click brings its response into focus, the rest is about the curve under the pointer.
@@ -260,11 +255,6 @@ fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: boo
     ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
 }
 
-fn title(scene: &OverviewScene<'_>, pair: Pair) -> String {
-    let name = |names: &[String], index: usize| names.get(index).cloned().unwrap_or_default();
-    format!("{} → {}", name(scene.inputs, pair.input), name(scene.outputs, pair.output))
-}
-
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     if !show_phase {
         return vec![(Pane::Magnitude, rect)];
@@ -291,6 +281,7 @@ const TOLERANCE: f64 = 0.25;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sketch {
     drawn: DrawnCurves,
+    /// Where the curves were drawn last: x counts decades of frequency; nothing where there was nothing to draw.
     transform: Option<PlotTransform>,
 }
 
@@ -331,11 +322,6 @@ impl Sketch {
             format!("{min} … {max}{unit}")
         })
     }
-
-    /// Where the curves were drawn last: x counts decades of frequency; nothing where there was nothing to draw.
-    pub(super) fn transform(&self) -> Option<PlotTransform> {
-        self.transform
-    }
 }
 
 #[cfg(test)]
@@ -357,10 +343,10 @@ mod tests {
         let (mut sketch, mut curves) =
             (Sketch::default(), vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])]);
         paint(&mut sketch, &curves);
-        let before = sketch.transform();
+        let before = sketch.transform;
         curves[1] = curve(1, &[1.0, 20.0, 3.0]);
         paint(&mut sketch, &curves);
-        assert_ne!(sketch.transform().map(|of| *of.bounds()), before.map(|of| *of.bounds()));
+        assert_ne!(sketch.transform.map(|of| *of.bounds()), before.map(|of| *of.bounds()));
         assert_eq!(sketch.range_text(Pane::Magnitude), "\u{2212}1 … 21 dB");
     }
 

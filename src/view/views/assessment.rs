@@ -7,9 +7,9 @@ use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{
     AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table, held_out_verdict,
 };
-use gdcm_core::units::signed;
 use gdcm_files::figure::{
-    Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans, Stroke, decimals,
+    Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans, Stroke, change_table,
+    decimals,
 };
 
 use super::View;
@@ -297,11 +297,11 @@ impl CostPart {
         }
     }
 
-    fn of(self, change: CostChange) -> f64 {
+    fn of(self) -> fn(CostChange) -> f64 {
         match self {
-            Self::Total => change.total(),
-            Self::Magnitude => change.magnitude(),
-            Self::Phase => change.phase(),
+            Self::Total => CostChange::total,
+            Self::Magnitude => CostChange::magnitude,
+            Self::Phase => CostChange::phase,
         }
     }
 }
@@ -353,18 +353,10 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
 /// The responses shown down, the conditions across, with the change of J in each cell; signed.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.assessed.part;
-    let conditions = state.dataset().conditions();
-    let headings = conditions.iter().map(|condition| condition.id().to_string());
+    let condition = |of: &std::sync::Arc<Condition>| (of.id(), of.id().to_string());
+    let conditions: Vec<(ConditionId, String)> = state.dataset().conditions().iter().map(condition).collect();
     let title = format!("{} of each response in each condition", part.symbol());
-    let mut text = Table::new(title, std::iter::once("response".to_owned()).chain(headings));
-    for pair in assessed_pairs(state) {
-        let cell = |condition: &std::sync::Arc<Condition>| {
-            let change = table.change(condition.id(), pair);
-            change.map_or_else(|| "–".to_owned(), |change| signed(part.of(change), 1))
-        };
-        text.row(std::iter::once(state.dataset().pair_name(pair)).chain(conditions.iter().map(cell)));
-    }
-    text
+    change_table(title, (state.dataset(), table), &assessed_pairs(state), &conditions, part.of())
 }
 
 /// The assessment in sentences: how much came closer, and what was left out.

@@ -49,7 +49,8 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
     Some(TestAnswersJob { analysis: current(state)?.into(), condition, input, test: state.study.requirements.test })
 }
 
-fn current(state: &State) -> Option<Arc<Analysis>> {
+/// The analysis of the present settings, where it is there.
+pub(super) fn current(state: &State) -> Option<Arc<Analysis>> {
     state.results.analysis.clone().filter(|_| state.analysis().is_some())
 }
 

@@ -205,9 +205,8 @@ impl View {
                 tools_width: 640.0,
                 is_of_all_conditions: true,
                 needs: |state| {
-                    let analysis = state.results.analysis.as_ref().filter(|_| state.analysis().is_some());
                     let choice = assessment_choice(state);
-                    let job = analysis.map(|analysis| AssessmentJob { analysis: Arc::clone(analysis).into(), choice });
+                    let job = current(state).map(|analysis| AssessmentJob { analysis: analysis.into(), choice });
                     job.map(Need::Assessment).into_iter().collect()
                 },
                 figure: Some(FigureKind::Assessment),

@@ -13,7 +13,7 @@ use gdcm_core::study::{
 use gdcm_core::units::{s_to_ms, telling};
 use gdcm_files::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
 
-use super::{Need, View, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
+use super::{Need, View, current, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
 use crate::view::CurveCommand;
 use crate::view::command::{Command, RequirementTable};
 use crate::view::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
@@ -67,7 +67,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
 
 /// The job of what is shown; none until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
-    let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
+    let analysis = current(state)?;
     Some(RequirementsJob {
         analysis: analysis.into(),
         uncertainty: state.uncertainty().cloned().map(Into::into),
@@ -105,7 +105,7 @@ pub fn all_records(state: &State) -> Vec<HistoryRecords> {
 
 /// The answers of all models to all records; none where there are none.
 fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
-    let analysis = state.results.analysis.clone().filter(|_| state.analysis().is_some())?;
+    let analysis = current(state)?;
     let records = all_records(state);
     let tolerances = state.study.requirements.tolerances.clone();
     (!records.is_empty()).then_some(TimeHistoriesJob { analysis: analysis.into(), records, tolerances })

@@ -1,13 +1,14 @@
 //! What the correction is worth: the change of J in each condition (M12, Figures 8 to 19), and what the scatter of the net gains is made of
 //! (M13.5).
 
-use gdcm_core::dataset::Pair;
+use gdcm_core::dataset::{ConditionId, Dataset, Pair};
 use gdcm_core::fidelity::CostAverage;
 use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{
-    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, PairScatter, Uncertainty,
+    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, PairScatter, Table, Uncertainty,
 };
 use gdcm_core::uncertainty::VarianceDecomposition;
+use gdcm_core::units::signed;
 
 use super::axis::{Axis, Range};
 use super::condition_source::{schedule_words, settings_words};
@@ -72,6 +73,24 @@ fn panel(analysis: &Analysis, table: &AssessmentTable, pair: Pair) -> Panel {
     let x = Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()));
     let panel = Panel::new(x, Axis::linear("ΔJ [-]").including(0.0).at_least(1.0));
     panel.with_all(bars).with(Rule::horizontal(0.0, ZERO)).with_all(left_out)
+}
+
+/// The change of J of each of `pairs`, or a part of it, in each condition, under these headings; signed.
+pub fn change_table(
+    title: impl Into<String>,
+    (dataset, found): (&Dataset, &AssessmentTable),
+    pairs: &[Pair],
+    conditions: &[(ConditionId, String)],
+    part: fn(CostChange) -> f64,
+) -> Table {
+    let headings = conditions.iter().map(|(_, heading)| heading.clone());
+    let mut table = Table::new(title, std::iter::once("response".to_owned()).chain(headings));
+    for &pair in pairs {
+        let change = |(id, _): &(ConditionId, String)| found.change(*id, pair).map(|change| signed(part(change), 1));
+        let cells = conditions.iter().map(|condition| change(condition).unwrap_or("–".to_owned()));
+        table.row(std::iter::once(dataset.pair_name(pair)).chain(cells));
+    }
+    table
 }
 
 /// `the median`, or `the mean`.

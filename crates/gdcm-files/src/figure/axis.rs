@@ -405,17 +405,9 @@ pub enum PhaseErrorUnit {
     Millisecond,
 }
 
-/// Three significant digits.
+/// Three significant digits; of what is below 1, three decimals.
 fn three_digits(value: f64) -> String {
-    let decimals = if value.abs() >= 100.0 {
-        0
-    } else if value.abs() >= 10.0 {
-        1
-    } else if value.abs() >= 1.0 {
-        2
-    } else {
-        3
-    };
+    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 3.0) as usize;
     format!("{value:.decimals$}")
 }
 

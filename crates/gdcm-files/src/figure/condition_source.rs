@@ -220,16 +220,21 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     )
 }
 
+/// `ln k`, or `k`.
+pub(crate) fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
+    match quantity {
+        ScheduledQuantity::LnGain => "ln k",
+        ScheduledQuantity::Gain => "k",
+    }
+}
+
 /// "polynomial of degree 2 of ln k".
 pub fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),
         ScheduleKind::Table => "table".to_owned(),
     };
-    let quantity = match settings.quantity {
-        ScheduledQuantity::LnGain => "ln k",
-        ScheduledQuantity::Gain => "k",
-    };
+    let quantity = quantity_symbol(settings.quantity);
     let second =
         settings.second.map_or_else(String::new, |variable| format!(", with {variable} in the middle of its range"));
     format!("{kind} of {quantity}{second}")

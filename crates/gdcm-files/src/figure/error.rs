@@ -143,10 +143,7 @@ impl Made {
 
     /// The response of a model in the band; nothing where it is zero or not finite somewhere in it.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
-        let omega = self.curves.grid.omega();
-        let from = omega.partition_point(|omega| *omega < self.band.0);
-        let to = omega.partition_point(|omega| *omega <= self.band.1);
-        PolarCurve::of(response.curve(self.pair).get(from..to)?)
+        PolarCurve::of(response.curve(self.pair).get(self.within())?)
     }
 
     /// The error of a response of the condition over `omega`, the band.
@@ -161,9 +158,10 @@ impl Made {
         Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 
-    fn omega(&self) -> Arc<[f64]> {
-        let within = |omega: &&f64| (self.band.0..=self.band.1).contains(*omega);
-        self.curves.grid.omega().iter().filter(within).copied().collect()
+    /// Which of the frequencies lie in the band.
+    fn within(&self) -> std::ops::Range<usize> {
+        let omega = self.curves.grid.omega();
+        omega.partition_point(|omega| *omega < self.band.0)..omega.partition_point(|omega| *omega <= self.band.1)
     }
 }
 
@@ -183,7 +181,7 @@ impl ErrorCache {
         if self.made.as_ref().is_some_and(|before| before.is_same(&made)) {
             return;
         }
-        self.omega = made.omega();
+        self.omega = made.curves.grid.omega()[made.within()].into();
         self.zero = vec![0.0; self.omega.len()].into();
         let error = |response: &Arc<FrequencyResponse>| {
             let shape = made.shape(response, &self.omega)?;

@@ -3,17 +3,19 @@
 
 use std::sync::Arc;
 
-use gdcm_core::dataset::{Pair, PairTable};
+use gdcm_core::dataset::{ConditionId, Pair, PairTable};
+use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{
-    Analysis, AssessedCondition, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table,
-    difference_table, held_out_verdict, scatter_table, second_variable_table,
+    Analysis, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table, difference_table,
+    held_out_verdict, scatter_table, second_variable_table,
 };
 use gdcm_core::units::signed;
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
 use crate::figure::{
-    FrequencyUnit, assessment_figure, average_word, couplings_figure, decimals, evidence_figure, usual_choice,
+    FrequencyUnit, assessment_figure, average_word, change_table, couplings_figure, decimals, evidence_figure,
+    usual_choice,
 };
 
 /// The analysis with how sure its figures are.
@@ -117,13 +119,10 @@ fn add_figures(page: &mut Page, analysis: &Analysis, choice: AssessmentChoice, p
 /// ΔJ of every response in every condition, as many conditions side by side as fit.
 fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair], of: &str) {
     let shown = &found.conditions[..found.conditions.len().min(CONDITIONS_DRAWN)];
-    let names = shown.iter().map(|assessed| format!("cond. {}", assessed.condition));
-    let mut table = Table::new(format!("ΔJ of {of}"), std::iter::once("response".to_owned()).chain(names));
-    for &pair in pairs {
-        let change = |assessed: &AssessedCondition| assessed.changes[pair].map(|change| signed(change.total(), 1));
-        let cells = shown.iter().map(|assessed| change(assessed).unwrap_or("–".to_owned()));
-        table.row(std::iter::once(analysis.study.dataset.pair_name(pair)).chain(cells));
-    }
+    let conditions: Vec<(ConditionId, String)> =
+        shown.iter().map(|of| (of.condition, format!("cond. {}", of.condition))).collect();
+    let made_of = (&*analysis.study.dataset, found);
+    let table = change_table(format!("ΔJ of {of}"), made_of, pairs, &conditions, CostChange::total);
     page.wide_table(&table, CONDITIONS);
     let more = found.conditions.len() - shown.len();
     if more > 0 {

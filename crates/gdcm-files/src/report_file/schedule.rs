@@ -2,13 +2,13 @@
 
 use gdcm_core::correction::{Channel, ChannelCorrection};
 use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::schedule::{Schedule, ScheduledQuantity};
+use gdcm_core::schedule::Schedule;
 use gdcm_core::study::{Analysis, Study, Table};
 use gdcm_core::units::{number, s_to_ms};
 
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
-use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure};
+use crate::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure, quantity_symbol};
 use crate::figure::{compact, decimals};
 
 /// Channels in one figure, in two rows.
@@ -95,10 +95,7 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
 
 fn add_coefficients(page: &mut Page, schedule: &Schedule, (inputs, outputs): (&[String], &[String])) {
     let found = schedule.coefficients(inputs, outputs);
-    let of = match schedule.settings.quantity {
-        ScheduledQuantity::LnGain => "ln k",
-        ScheduledQuantity::Gain => "k",
-    };
+    let of = quantity_symbol(schedule.settings.quantity);
     let title = if found.scale.is_empty() {
         format!("The schedule: {of} at each airspeed, linear between")
     } else {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use gdcm_core::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
+use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_core::study::{Analysis, AssessmentTable, Caution, ConditionAnalysis, SETTINGS, Study, Table, setting};
 use gdcm_core::units::number;
 
@@ -12,7 +12,7 @@ use super::assessment::capital;
 use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
-use crate::figure::{decimals, usual_choice};
+use crate::figure::{decimals, quantity_symbol, usual_choice};
 
 /// What came of the study, at a glance.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
@@ -116,10 +116,7 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
         ScheduleKind::Table => "table over airspeed, linear between its points".to_owned(),
     };
-    let of = match settings.quantity {
-        ScheduledQuantity::LnGain => "ln k",
-        ScheduledQuantity::Gain => "k",
-    };
+    let of = quantity_symbol(settings.quantity);
     let delays = if settings.delays { "delays are scheduled too" } else { "delays are not scheduled" };
     let second = settings.second.map_or_else(String::new, |variable| format!(" and {variable}"));
     format!("{kind}{second}, of {of}; airspeeds within {} kt are one; {delays}", number(settings.airspeed_tolerance_kt))

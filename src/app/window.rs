@@ -139,7 +139,8 @@ impl GdcmApp {
         let begins_there = app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
         app.state.on_start_page = begins_there && setup.trouble.is_none();
         setup.trouble.into_iter().for_each(|words| app.notify_error(words));
-        app.offer_tour(setup.offers_tour);
+        let is_first = setup.offers_tour && app.directory.as_deref().is_some_and(is_first_start);
+        app.state.tour = is_first.then_some(0);
         app.look_for_recent();
         Ok(app)
     }
@@ -276,14 +277,6 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the guided tour at the first start.
-    fn offer_tour(&mut self, is_asked: bool) {
-        let Some(directory) = self.directory.as_deref().filter(|_| is_asked) else { return };
-        if is_first_start(directory) {
-            self.state.tour = Some(0);
-        }
-    }
-
     /// Sets the window's title where it changed.
     fn name_window(&mut self) {
         let title = self.state.window_title();
@@ -338,7 +331,12 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     if !state.display.left_open.unwrap_or(state.display.is_wide) {
         let frame = side.inner_margin(Margin { left: 4, right: 2, top: 2, bottom: 4 });
         let panel = Panel::left("rail").frame(frame).exact_size(104.0);
-        panel.show(ui, |ui| scrolled(ui, "rail", |ui| conditions_panel::rail_ui(ui, state, palette, commands)));
+        panel.show(ui, |ui| {
+            ScrollArea::vertical().id_salt("rail").auto_shrink(false).show(ui, |ui| {
+                ui.set_width(ui.available_width());
+                conditions_panel::rail_ui(ui, state, palette, commands);
+            });
+        });
         return;
     }
     restore_panel_size(ui, "conditions and models");
@@ -383,10 +381,8 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
     });
     // A click beside it may ask about another value: that is shown then.
     let asks = commands.iter().any(|command| matches!(command, Command::Explain(_)));
-    if is_closed && sheet == Sheet::Derivation && !asks {
-        commands.push(Command::Explain(None));
-    } else if is_closed && !asks {
-        commands.push(Command::ShowSheet(None));
+    if is_closed && !asks {
+        commands.push(if sheet == Sheet::Derivation { Command::Explain(None) } else { Command::ShowSheet(None) });
     }
 }
 
@@ -401,14 +397,6 @@ impl Drop for GdcmApp {
 /// every frame, and results of another dataset belong to that one even where it is equal.
 fn asks_the_same(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
-}
-
-/// A column that scrolls where it is too long.
-fn scrolled(ui: &mut Ui, id: &str, add: impl FnOnce(&mut Ui)) {
-    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        add(ui);
-    });
 }
 
 /// The name that the preferences are kept by.

@@ -57,16 +57,13 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     });
     ui.add_space(12.0);
     region_ui(ui, Region::Models, |ui| {
-        let rejected = |kind| state.study.choice(state.condition().id()).bundle(kind).rejected.len();
         let open = state.shown().map_or(0, |shown| state.open_suggestions(shown).len());
         let sheets = [
             (BundleKind::Physics, "Models", Sheet::Models, open),
             (BundleKind::Identified, "Identified", Sheet::Identified, 0),
         ];
         for (kind, name, sheet, open) in sheets {
-            let count = state.condition().bundle(kind).len();
-            let kept = format!("{} of {count}", count - rejected(kind));
-            bundle_button_ui(ui, (name, &kept, open), sheet, palette, commands);
+            bundle_button_ui(ui, (name, &state.kept_words(kind), open), sheet, palette, commands);
         }
     });
 }

@@ -268,19 +268,7 @@ pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &st
     named_switch(ui.add(button), Role::CheckBox, is_on, name).on_hover_text(hint).clicked()
 }
 
-/// A heading on the left, a value on the right.
-pub fn heading_ui(ui: &mut Ui, palette: &Palette, title: &str, value: &str) -> egui::Response {
-    ui.add_space(4.0);
-    let shown = ui.horizontal(|ui| {
-        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.label(palette.small(value));
-        });
-    });
-    shown.response
-}
-
-/// The same over a table: a right-click copies it or saves it, as the palette does.
+/// A heading on the left, a value on the right, over a table: a right-click copies it or saves it, as the palette does.
 pub fn table_heading_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -288,8 +276,12 @@ pub fn table_heading_ui(
     kind: TableKind,
     commands: &mut Vec<Command>,
 ) {
-    let heading = heading_ui(ui, palette, title, value);
-    table_menu_ui(ui, &heading, kind, commands);
+    ui.add_space(4.0);
+    let heading = ui.horizontal(|ui| {
+        ui.label(RichText::new(title).font(medium(BODY_SIZE)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(palette.small(value)));
+    });
+    table_menu_ui(ui, &heading.response, kind, commands);
 }
 
 /// What a right-click offers on the heading of a table.

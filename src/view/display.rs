@@ -126,11 +126,6 @@ pub struct Display {
 }
 
 impl Display {
-    /// A condition and a response, in plots that fit what they show.
-    pub(super) fn of(condition: ConditionId, pair: Pair) -> Self {
-        Self { condition, pair, ..Self::default() }
-    }
-
     /// Shows all of the curves in the plots over frequency.
     pub fn fit_frequency_plots(&mut self) {
         self.bode.request_fit();

@@ -36,7 +36,7 @@ pub use command_palette::{PaletteForm, command_palette_ui};
 pub use command_table::{Entry, Menu, Reach, every_command};
 pub use controls::{
     Asks, Entered, NumberField, ROW_HEIGHT, Room, button_ui, check_ui, elided_among, entries_ui, entry_ui, focus_field,
-    heading_ui, is_entered, name_text_field, named, named_switch, number_entry_ui, painted_text, restore_panel_size,
+    is_entered, name_text_field, named, named_switch, number_entry_ui, painted_text, restore_panel_size,
     row_of_height_ui, row_text, row_text_within, row_ui, table_heading_ui, table_menu_ui, text_field_ui, typed_number,
 };
 use curve_display::curve_entries;

@@ -58,11 +58,8 @@ const FOLD: f32 = 36.0;
 
 fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let kind = BundleKind::Physics;
-    let count = state.condition().bundle(kind).len();
-    let rejected = state.study.choice(state.condition().id()).bundle(kind).rejected.len();
     let title = format!("Physics models of {}", state.condition().id());
-    let kept = format!("{} of {count}", count - rejected);
-    table_heading_ui(ui, palette, (&title, &kept), TableKind::of_bundle(kind), commands);
+    table_heading_ui(ui, palette, (&title, &state.kept_words(kind)), TableKind::of_bundle(kind), commands);
     at_once_ui(ui, state, palette, commands);
     rows_ui(ui, state, palette, kind, commands);
 }
@@ -82,8 +79,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         };
         ui.label(if open.is_empty() { palette.small(words) } else { palette.small_warning(words) });
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let any = rejected > 0 || !choice.identified.rejected.is_empty();
-            if any {
+            if rejected > 0 || !choice.identified.rejected.is_empty() {
                 let restore = ui.button("Restore all");
                 restore
                     .on_hover_text("Put every rejected model of this condition back")
@@ -109,8 +105,7 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Identified models", medium(BODY_SIZE), palette.text);
     let models = state.condition().bundle(BundleKind::Identified);
-    let rejected = state.study.choice(state.condition().id()).identified.rejected.len();
-    let mut words = format!("{} of {}", models.len() - rejected, models.len());
+    let mut words = state.kept_words(BundleKind::Identified);
     let name = state.shown().map(|shown| shown.representative_name(BundleKind::Identified));
     let order = models.iter().find(|model| Some(model.name.as_str()) == name).and_then(Model::order);
     if let Some(order) = order {
@@ -318,11 +313,9 @@ impl<'a> ModelRow<'a> {
         if self.pinned {
             ui.painter().circle_filled(pos2(place.right() + 1.0, rect.top() + 5.0), 1.8, palette.warning);
         }
-        if response.clicked() {
-            let (condition, bundle) = (self.id.condition, self.id.bundle);
-            commands
-                .push(if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) }.into());
-        }
+        let (condition, bundle) = (self.id.condition, self.id.bundle);
+        let edit = if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) };
+        response.asks(edit, commands);
         let hint = match (self.pinned, self.represents) {
             _ if !can_represent => "Cannot be the representative: rejected or set aside",
             (true, _) if self.set_aside.is_some() => "Chosen as representative, but set aside; click: use the medoid",

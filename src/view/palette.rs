@@ -170,14 +170,6 @@ impl Palette {
         }
     }
 
-    /// The palette of an egui theme.
-    pub fn of_theme(theme: Theme) -> Self {
-        match theme {
-            Theme::Dark => Self::dark(),
-            Theme::Light => Self::light(),
-        }
-    }
-
     /// `color` moved towards the text by `amount` (0 to 1): a hovered or pressed shade of it.
     pub fn towards_text(&self, color: Color32, amount: f32) -> Color32 {
         color.lerp_to_gamma(self.text, amount)
@@ -305,8 +297,8 @@ pub fn fonts() -> FontDefinitions {
 /// Gives both of egui's themes the style of this program: switching between them is egui's own `set_theme`.
 pub fn apply(ctx: &Context) {
     ctx.set_fonts(fonts());
-    for theme in [Theme::Dark, Theme::Light] {
-        ctx.set_style_of(theme, Palette::of_theme(theme).style());
+    for (theme, palette) in [(Theme::Dark, Palette::dark()), (Theme::Light, Palette::light())] {
+        ctx.set_style_of(theme, palette.style());
     }
 }
 
@@ -489,9 +481,9 @@ mod tests {
     fn both_themes_of_a_context_get_their_own_style() {
         let ctx = Context::default();
         apply(&ctx);
-        for theme in [Theme::Dark, Theme::Light] {
-            assert_eq!(ctx.style_of(theme).visuals.panel_fill, Palette::of_theme(theme).panel);
-            assert_eq!(Palette::of(&ctx.style_of(theme).visuals), Palette::of_theme(theme));
+        for (theme, palette) in [(Theme::Dark, Palette::dark()), (Theme::Light, Palette::light())] {
+            assert_eq!(ctx.style_of(theme).visuals.panel_fill, palette.panel);
+            assert_eq!(Palette::of(&ctx.style_of(theme).visuals), palette);
         }
     }
 

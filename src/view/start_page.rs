@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 
 use super::assembling::AssemblingCommand;
 use super::conditions_panel::cost_picture_ui;
+use super::controls::elided;
 use super::palette::{DISPLAY_SIZE, TITLE_SIZE, body, medium, small};
 use super::plot::{BodeCurve, Pane, Role as CurveRole};
 use super::records::RecordsCommand;
 use super::views::bode_curves;
-use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, named, painted_text};
+use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, button_ui, named, painted_text};
 
 /// What the program opens with where it is given nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,8 +86,8 @@ fn ways() -> [Way; 3] {
 
 /// The line above the plots of the example that offers the same three ways.
 pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
-    let size = egui::vec2(ui.available_width(), 18.0);
-    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+    let size = vec2(ui.available_width(), 18.0);
+    ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
         ui.spacing_mut().button_padding = egui::Vec2::ZERO;
         ui.spacing_mut().interact_size.y = 16.0;
@@ -96,8 +97,7 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
                 ui.label(palette.small("·"));
             }
             let text = RichText::new(way.button).size(SMALL_SIZE).color(palette.accent);
-            let button = named(ui.add(Button::new(text).frame(false)), Role::Button, way.button);
-            button.on_hover_text(way.words).asks(way.command, commands);
+            button_ui(ui, Button::new(text).frame(false), way.words, way.command, commands);
         }
     });
 }
@@ -159,7 +159,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     let color = if is_primary { palette.on_accent() } else { palette.text };
     let button = Button::new(RichText::new(way.button).font(medium(BODY_SIZE)).color(color)).min_size(place.size());
     let button = if is_primary { button.fill(palette.accent) } else { button };
-    named(ui.put(place, button), Role::Button, way.button).asks(way.command, commands);
+    ui.put(place, button).asks(way.command, commands);
     ui.advance_cursor_after_rect(rect);
 }
 
@@ -194,7 +194,7 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         let name = painted_text(ui, row, 4.0, &file.name, body(), color);
         let folder = if file.missing { format!("{}, missing", file.folder) } else { file.folder.clone() };
         let room = row.right() - name.right() - 16.0;
-        let folder = super::controls::elided(ui, &folder, room, SMALL_SIZE);
+        let folder = elided(ui, &folder, room, SMALL_SIZE);
         painted_text(ui, row, name.right() - row.left() + 10.0, &folder, small(), palette.dim_text);
         let response = named(response, Role::Button, format!("Open again: {} in {}", file.name, file.folder));
         if response.clicked() && !file.missing {

@@ -136,8 +136,9 @@ impl State {
     /// The state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
-        let mut display = Display::of(study.dataset.conditions()[0].id(), pair);
-        display.once_held = study.settings.constrained.marked().collect();
+        let condition = study.dataset.conditions()[0].id();
+        let once_held = study.settings.constrained.marked().collect();
+        let display = Display { condition, pair, once_held, ..Display::default() };
         Self {
             followed: Arc::clone(&study.dataset),
             study,
@@ -340,6 +341,13 @@ impl State {
         self.display.curves.forget_models();
         self.display.shapes.clear();
         self.display.fit_frequency_plots();
+    }
+
+    /// How many models of a bundle of the condition shown are kept: "14 of 19".
+    pub fn kept_words(&self, kind: BundleKind) -> String {
+        let count = self.condition().bundle(kind).len();
+        let rejected = self.study.choice(self.condition().id()).bundle(kind).rejected.len();
+        format!("{} of {count}", count - rejected)
     }
 
     /// A model of the condition shown.

@@ -303,8 +303,7 @@ impl QuadraticModel {
         let (gradient, hessian) = (&at.gradient, &at.hessian);
         self.step.fill(0.0);
         self.slope.copy_from_slice(gradient);
-        for scale in 0..self.scales {
-            let slope = gradient[scale];
+        for (scale, &slope) in gradient.iter().enumerate() {
             let stopped = (self.low[scale] >= 0.0 && slope >= 0.0) || (self.high[scale] <= 0.0 && slope <= 0.0);
             self.is_free[scale] = self.low[scale] < self.high[scale] && !stopped;
         }

@@ -223,9 +223,12 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
             linked => linked?,
         }
-        let file = File::open(path)?;
+        // Another process may take it for a leftover before the lock: then another name is taken.
+        let removed = || io::Error::from(ErrorKind::AlreadyExists);
+        let file =
+            File::open(path).map_err(|error| if error.kind() == ErrorKind::NotFound { removed() } else { error })?;
         let _ = file.try_lock();
-        Ok(file)
+        if path.exists() { Ok(file) } else { Err(removed()) }
     })
 }
 

@@ -262,6 +262,9 @@ fn take_choice(study: &mut Study, condition: ConditionId, choice: &ConditionChoi
     if !choice.scheduled {
         edits.push(Edit::SetScheduled { condition, scheduled: false });
     }
+    if choice.held_out {
+        edits.push(Edit::SetHeldOut { condition, held_out: true });
+    }
     for kind in BundleKind::BOTH {
         let id = |name: &String| ModelId::new(condition, kind, name);
         let of_bundle = choice.bundle(kind);

@@ -107,7 +107,8 @@ fn every_setting_is_a_key_of_the_file() {
 proptest! {
     #[test]
     fn a_study_saved_and_opened_is_the_same_to_the_last_digit(
-        edits in edits(), others in edits(), rejected in 0_usize..2, scheduled in any::<bool>(), reason in "[ -~α→\n]{0,40}",
+        edits in edits(), others in edits(), rejected in 0_usize..2, [scheduled, held_out] in any::<[bool; 2]>(),
+        reason in "[ -~α→\n]{0,40}",
     ) {
         let desk = Desk::new();
         let loaded = desk.loaded();
@@ -119,6 +120,7 @@ proptest! {
             Edit::RejectBecause { model: id(BundleKind::Physics, rejected), reason },
             Edit::Pin(id(BundleKind::Identified, rejected)),
             Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
+            Edit::SetHeldOut { condition: first.id(), held_out },
             Edit::SetSign { channel: Channel::Output(1), of: Some(SignRole::Identified) },
             Edit::KeepVariant { name: "first → α".to_owned() },
         ]);

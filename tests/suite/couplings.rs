@@ -59,6 +59,7 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
 }
 
 #[test]
+#[ignore = "runs another program: 18 s"]
 fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
     let desk = Desk::new();
     let export = |format: &str, name: &str, more: &[&str]| {

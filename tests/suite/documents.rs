@@ -29,6 +29,7 @@ fn words(svg: &str) -> Vec<(String, [f64; 2])> {
 }
 
 #[test]
+#[ignore = "makes every figure of the page anew: 13 s"]
 fn the_commands_of_the_page_make_its_pictures() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let page = fs::read_to_string(docs.join("figures.md")).unwrap();

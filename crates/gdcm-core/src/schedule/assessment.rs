@@ -252,6 +252,7 @@ pub fn corrected_cost(
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::points;
     use super::*;
 
     fn corrections(gains: &[f64]) -> Vec<ChannelCorrection> {
@@ -265,18 +266,6 @@ mod tests {
         gains.iter().map(of).collect()
     }
 
-    fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
-        let pairs = airspeeds_kt.iter().zip(corrections);
-        pairs
-            .map(|(&airspeed_kt, correction)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s: 0.0,
-                second: None,
-            })
-            .collect()
-    }
-
     #[test]
     fn the_degree_that_made_the_gains_leaves_nothing_and_foresees_what_it_has_not_seen() {
         // ln k = 0.1 v + 0.05 v^2 over 60 to 120 kt.
@@ -286,7 +275,7 @@ mod tests {
             (0.1 * v + 0.05 * v * v).exp()
         });
         let corrections = corrections(&gains);
-        let found = compare_forms(&points(&airspeeds, &corrections), ScheduleSettings::default()).unwrap();
+        let found = compare_forms(&points(&airspeeds, &corrections, 0.0), ScheduleSettings::default()).unwrap();
         let of = |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().pairs[Pair::new(1, 0)];
         // Least squares of five points, condition number below 5.
         assert!(of(2).rms_ln().unwrap() < 1e-14 && of(3).rms_ln().unwrap() < 1e-14);
@@ -308,8 +297,8 @@ mod tests {
     #[test]
     fn a_response_whose_net_gain_never_changes_is_left_no_residual() {
         let corrections = corrections(&[1.0, 1.2, 0.9, 1.4]);
-        let found =
-            compare_forms(&points(&[50.0, 80.0, 110.0, 140.0], &corrections), ScheduleSettings::default()).unwrap();
+        let found = compare_forms(&points(&[50.0, 80.0, 110.0, 140.0], &corrections, 0.0), ScheduleSettings::default())
+            .unwrap();
         for kind in &found.kinds {
             for condition in 0..4 {
                 // k_0 k_i = 2 in every condition.
@@ -324,7 +313,7 @@ mod tests {
     #[test]
     fn a_single_condition_cannot_be_left_out() {
         let corrections = corrections(&[1.3]);
-        let found = compare_forms(&points(&[80.0], &corrections), ScheduleSettings::default()).unwrap();
+        let found = compare_forms(&points(&[80.0], &corrections, 0.0), ScheduleSettings::default()).unwrap();
         let fit = &found.kinds[0].pairs[Pair::new(1, 0)];
         assert_eq!((fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()), (Some(0.0), None, &[None][..]));
         assert_eq!(compare_forms(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
@@ -333,6 +322,7 @@ mod tests {
 
 #[cfg(test)]
 mod lead_tests {
+    use super::super::tests::points;
     use super::*;
     use crate::correction::{ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadSettings};
 
@@ -350,16 +340,7 @@ mod lead_tests {
                 Channels { inputs: vec![tau_s], outputs: vec![0.01] },
             )),
         });
-        let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
-            .into_iter()
-            .zip(&corrections)
-            .map(|(airspeed_kt, correction)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s: 0.02,
-                second: None,
-            })
-            .collect();
+        let points = points(&[60.0, 90.0, 120.0], &corrections, 0.02);
         let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
         // The mean of the others misses by 3/2 of what the mean of all misses.

@@ -490,20 +490,23 @@ mod tests {
         }
     }
 
+    /// Points of a schedule of these corrections at these airspeeds.
+    pub(super) fn points<'a>(
+        airspeeds_kt: &[f64],
+        corrections: &'a [ChannelCorrection],
+        delay_upper_s: f64,
+    ) -> Vec<ScheduledPoint<'a>> {
+        let pairs = airspeeds_kt.iter().zip(corrections);
+        let point =
+            |(&airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s, second: None };
+        pairs.map(point).collect()
+    }
+
     #[test]
     fn regressing_the_logarithm_makes_the_product_the_regression_of_the_product() {
         let corrections: Vec<_> = [0.8, 1.1, 0.9, 1.3].into_iter().map(correction).collect();
-        let airspeeds = [40.0, 70.0, 100.0, 140.0];
-        let points: Vec<_> = corrections
-            .iter()
-            .zip(airspeeds)
-            .map(|(correction, airspeed_kt)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s: 1.0,
-                second: None,
-            })
-            .collect();
+        let airspeeds_kt = [40.0, 70.0, 100.0, 140.0];
+        let points = points(&airspeeds_kt, &corrections, 1.0);
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
         let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).ln()).collect();
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
@@ -523,16 +526,7 @@ mod tests {
     fn a_parabola_through_two_near_airspeeds_and_a_far_one_is_cautioned_of_where_it_overshoots() {
         let corrections: Vec<_> = [1.0, 1.1, 1.0].into_iter().map(correction).collect();
         let of = |airspeeds_kt: [f64; 3], airspeed_tolerance_kt| {
-            let points: Vec<_> = corrections
-                .iter()
-                .zip(airspeeds_kt)
-                .map(|(correction, airspeed_kt)| ScheduledPoint {
-                    airspeed_kt,
-                    correction,
-                    delay_upper_s: 1.0,
-                    second: None,
-                })
-                .collect();
+            let points = points(&airspeeds_kt, &corrections, 1.0);
             Schedule::of(&points, ScheduleSettings { airspeed_tolerance_kt, ..ScheduleSettings::default() }).unwrap()
         };
         assert_eq!(of([60.0, 90.0, 120.0], 2.0).cautions, [], "through its points, in the range between");
@@ -586,6 +580,7 @@ mod tests {
 
 #[cfg(test)]
 mod lead_schedule_tests {
+    use super::tests::points;
     use super::*;
     use crate::correction::{ChannelCorrection, LeadSettings};
 
@@ -604,18 +599,6 @@ mod lead_schedule_tests {
         taus_s.iter().map(of).collect()
     }
 
-    fn points<'a>(airspeeds_kt: &[f64], corrections: &'a [ChannelCorrection]) -> Vec<ScheduledPoint<'a>> {
-        let pairs = airspeeds_kt.iter().zip(corrections);
-        pairs
-            .map(|(&airspeed_kt, correction)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s: 0.01,
-                second: None,
-            })
-            .collect()
-    }
-
     #[test]
     fn the_sum_of_two_channels_is_the_regression_of_the_sums() {
         let airspeeds_kt = [60.0, 80.0, 100.0, 130.0];
@@ -623,7 +606,7 @@ mod lead_schedule_tests {
         let corrections = corrections(&taus_s);
         let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
         for degree in 0..=2 {
-            let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, degree).unwrap();
+            let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections, 0.01), &airspeeds, degree).unwrap();
             let sums: Vec<f64> = taus_s.iter().map(|[input, output]| input + output).collect();
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
@@ -638,7 +621,7 @@ mod lead_schedule_tests {
         let corrections = corrections(&[[-0.09, 0.01], [-0.09, 0.01], [0.01, -0.05], [0.01, -0.05]]);
         let airspeeds_kt = [60.0, 80.0, 100.0, 120.0];
         let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
-        let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections), &airspeeds, 3).unwrap();
+        let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections, 0.01), &airspeeds, 3).unwrap();
         let uncut_s = schedule.taus_s.inputs[0].at(&airspeeds, 110.0);
         assert!(uncut_s > 0.011, "the cubic swings over: {uncut_s}");
         assert_eq!(schedule.at(&airspeeds, 110.0).taus_s.inputs, [0.01]);

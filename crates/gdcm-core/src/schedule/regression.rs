@@ -349,9 +349,10 @@ mod basis_tests {
 
 #[cfg(test)]
 mod coefficients_tests {
+    use super::super::tests::points;
     use super::*;
     use crate::correction::ChannelCorrection;
-    use crate::schedule::{ScheduleKind, ScheduleSettings, ScheduledPoint};
+    use crate::schedule::{ScheduleKind, ScheduleSettings};
 
     #[test]
     fn every_channel_has_a_row_of_named_coefficients() {
@@ -362,16 +363,7 @@ mod coefficients_tests {
             output_delays_s: vec![0.0],
             leads: None,
         });
-        let points: Vec<ScheduledPoint<'_>> = [60.0, 90.0, 120.0]
-            .into_iter()
-            .zip(&corrections)
-            .map(|(airspeed_kt, correction)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s: 0.1,
-                second: None,
-            })
-            .collect();
+        let points = points(&[60.0, 90.0, 120.0], &corrections, 0.1);
         let names = (["LON".to_owned()], ["Q".to_owned()]);
         let of = |settings| Schedule::of(&points, settings).unwrap().coefficients(&names.0, &names.1);
         let table = of(ScheduleSettings { delays: true, ..ScheduleSettings::default() });

@@ -140,7 +140,7 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
 
 /// The shares of the states in the mode at this place of the diagonal.
 fn participation(form: &SchurForm, index: usize) -> Result<Vec<(usize, f64)>, NearDefective> {
-    let (x, y) = (right(&form.t, index), left(&form.t, index));
+    let (x, y) = (form.right(index), form.left(index));
     let movement = x.norm() * y.norm();
     // Not a number, too, where they overflow.
     if !movement.le(&NEAR_DEFECTIVE) {
@@ -152,35 +152,6 @@ fn participation(form: &SchurForm, index: usize) -> Result<Vec<(usize, f64)>, Ne
     let mut shares: Vec<(usize, f64)> = products.into_iter().map(|product| product / sum).enumerate().collect();
     shares.sort_by(|a, b| b.1.total_cmp(&a.1));
     Ok(shares)
-}
-
-/// `(T - t_kk) x = 0` with `x_k = 1`.
-fn right(t: &DMatrix<Complex<f64>>, k: usize) -> DVector<Complex<f64>> {
-    let mut x = DVector::from_element(t.nrows(), Complex::new(0.0, 0.0));
-    x[k] = Complex::new(1.0, 0.0);
-    for row in (0..k).rev() {
-        let sum: Complex<f64> = (row + 1..=k).map(|column| t[(row, column)] * x[column]).sum();
-        x[row] = -sum / apart(t, row, k);
-    }
-    x
-}
-
-/// `y (T - t_kk) = 0` with `y_k = 1`.
-fn left(t: &DMatrix<Complex<f64>>, k: usize) -> DVector<Complex<f64>> {
-    let mut y = DVector::from_element(t.nrows(), Complex::new(0.0, 0.0));
-    y[k] = Complex::new(1.0, 0.0);
-    for column in k + 1..t.nrows() {
-        let sum: Complex<f64> = (k..column).map(|row| y[row] * t[(row, column)]).sum();
-        y[column] = -sum / apart(t, column, k);
-    }
-    y
-}
-
-/// The difference of two poles; rounding at least, for equal ones.
-fn apart(t: &DMatrix<Complex<f64>>, of: usize, from: usize) -> Complex<f64> {
-    let difference = t[(of, of)] - t[(from, from)];
-    let least = (f64::EPSILON * t.camax()).max(f64::MIN_POSITIVE);
-    if difference.norm() < least { Complex::from(least) } else { difference }
 }
 
 /// From eigenvalues of matrices to poles and zeros `s` \[rad/s\]: themselves in continuous time, `s = ln z / T` in discrete time.
@@ -225,6 +196,8 @@ pub(crate) struct SchurForm {
     pub(crate) q: DMatrix<Complex<f64>>,
     /// Triangular, with the eigenvalues on its diagonal.
     pub(crate) t: DMatrix<Complex<f64>>,
+    /// The least difference of two eigenvalues that is not rounding.
+    least: f64,
 }
 
 impl SchurForm {
@@ -232,10 +205,11 @@ impl SchurForm {
     pub(crate) fn of(a: &DMatrix<f64>) -> Option<Self> {
         let (q, t) = quasi_triangular(a)?;
         let blocks: Vec<usize> = (1..a.nrows()).filter(|&row| t[(row, row - 1)] != 0.0).map(|row| row - 1).collect();
-        let mut form = Self { q: q.map(Complex::from), t: t.map(Complex::from) };
+        let mut form = Self { q: q.map(Complex::from), t: t.map(Complex::from), least: 0.0 };
         for first in blocks {
             form.split(first, t.fixed_view::<2, 2>(first, first).into_owned().transpose().data.0);
         }
+        form.least = (f64::EPSILON * form.t.camax()).max(f64::MIN_POSITIVE);
         Some(form)
     }
 
@@ -246,7 +220,37 @@ impl SchurForm {
 
     /// The eigenvector of unit length of the eigenvalue at a place of the diagonal.
     pub(crate) fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
-        (&self.q * right(&self.t, at)).normalize()
+        (&self.q * self.right(at)).normalize()
+    }
+
+    /// `(T - t_kk) x = 0` with `x_k = 1`.
+    fn right(&self, k: usize) -> DVector<Complex<f64>> {
+        let mut x = self.unit(k);
+        for row in (0..k).rev() {
+            let sum: Complex<f64> = (row + 1..=k).map(|column| self.t[(row, column)] * x[column]).sum();
+            x[row] = -sum / self.apart(row, k);
+        }
+        x
+    }
+
+    /// `y (T - t_kk) = 0` with `y_k = 1`.
+    fn left(&self, k: usize) -> DVector<Complex<f64>> {
+        let mut y = self.unit(k);
+        for column in k + 1..self.t.nrows() {
+            let sum: Complex<f64> = (k..column).map(|row| y[row] * self.t[(row, column)]).sum();
+            y[column] = -sum / self.apart(column, k);
+        }
+        y
+    }
+
+    fn unit(&self, k: usize) -> DVector<Complex<f64>> {
+        DVector::from_fn(self.t.nrows(), |row, _| Complex::from(if row == k { 1.0 } else { 0.0 }))
+    }
+
+    /// The difference of two eigenvalues; rounding at least, for equal ones.
+    fn apart(&self, of: usize, from: usize) -> Complex<f64> {
+        let difference = self.t[(of, of)] - self.t[(from, from)];
+        if difference.norm() < self.least { Complex::from(self.least) } else { difference }
     }
 
     /// Makes the block of the rows `first` and `first + 1` triangular.

@@ -29,6 +29,13 @@ impl Desk {
         self.directory.path().join(name)
     }
 
+    /// The directory with a few conditions of the example in it, too.
+    pub(crate) fn with_few() -> Self {
+        let desk = Self::new();
+        fs::write(desk.path("few.json"), &*crate::FEW_TEXT).unwrap();
+        desk
+    }
+
     pub(crate) fn write(&self, name: &str, change: impl FnOnce(&mut Value)) {
         let mut value: Value = serde_json::from_str(SMALL).unwrap();
         change(&mut value);

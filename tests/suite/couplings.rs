@@ -124,15 +124,15 @@ fn a_schedule_over_airspeed_and_altitude_has_its_couplings_beside_it() {
 
 #[test]
 fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
-    let desk = Desk::new();
-    let ids: Vec<String> = crate::EXAMPLE.dataset.conditions().iter().map(|of| of.id().to_string()).collect();
+    let desk = Desk::with_few();
+    let ids: Vec<String> = crate::FEW.dataset.conditions().iter().map(|of| of.id().to_string()).collect();
     let held_out: Vec<&str> = ids[1..].iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
-    let ended = desk.gdcm(&[&["analyze", "--out", "one"], &COUPLED[..], &held_out[..]].concat());
+    let ended = desk.gdcm(&[&["analyze", "few.json", "--out", "one"], &COUPLED[..], &held_out[..]].concat());
     ended.assert_done();
     assert!(ended.out.contains("Couplings of 1 condition: three are needed"), "{}", ended.out);
     // What leaves must not be without couplings where some are asked for.
     let all: Vec<&str> = ids.iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
-    let export = ["export", "--as", "state-space", "--correction", "own", "--out", "own.mat"];
+    let export = ["export", "few.json", "--as", "state-space", "--correction", "own", "--out", "own.mat"];
     let refused = desk.gdcm(&[&export[..], &COUPLED[..], &all[..]].concat());
     assert!(refused.error.contains("the study asks for couplings, and there are none: "), "{}", refused.error);
     assert!(refused.status != 0 && !desk.path("own.mat").exists());
@@ -143,12 +143,12 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
 
 #[test]
 fn the_report_has_a_section_on_couplings() {
-    let desk = Desk::new();
-    desk.gdcm(&[&["report", "--out", "r.html"], &COUPLED[..]].concat()).assert_done();
+    let desk = Desk::with_few();
+    desk.gdcm(&[&["report", "few.json", "--out", "r.html"], &COUPLED[..]].concat()).assert_done();
     let page = fs::read_to_string(desk.path("r.html")).unwrap();
     for words in [
         "Couplings</h",
-        "swashplate phase of 2.",
+        "swashplate phase of ",
         "Feedback: units of an input",
         "Poles of the physics representatives",
     ] {
@@ -158,8 +158,8 @@ fn the_report_has_a_section_on_couplings() {
 
 #[test]
 fn a_figure_shows_the_poles_of_the_condition_that_is_asked_for() {
-    let desk = Desk::new();
-    let figure = ["figure", "--view", "couplings", "--condition", "3", "--out", "couplings.svg"];
+    let desk = Desk::with_few();
+    let figure = ["figure", "few.json", "--view", "couplings", "--condition", "3", "--out", "couplings.svg"];
     desk.gdcm(&[&figure[..], &COUPLED[..]].concat()).assert_done();
     let text = fs::read_to_string(desk.path("couplings.svg")).unwrap();
     assert!(text.contains("Poles of condition 3") && text.contains("close to ringing"));

@@ -176,10 +176,10 @@ fn corrected_models_are_the_program_s_in_every_format() {
 /// A corrected model with leads is the model between its channels' filters, exactly; programs give the filters themselves.
 #[test]
 fn leads_are_exact_in_corrected_models_and_in_programs() {
-    let desk = Desk::new();
+    let desk = Desk::with_few();
     let export = |format: &str, name: &str| {
         let options = ["--phase", "lead", "--as", format, "--out", name];
-        let ended = desk.gdcm(&[&["export"][..], &options].concat());
+        let ended = desk.gdcm(&[&["export", "few.json"][..], &options].concat());
         ended.assert_done();
         ended.out
     };
@@ -187,9 +187,9 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     assert!(words.contains("gains and lead filters exact"), "{words}");
     let found = models(&desk.path("m.json"));
     assert_eq!(found[0].draft.states[..2], ["LON lead 1", "LON lead 2"]);
-    desk.gdcm(&["analyze", "--phase", "lead", "--out", "."]).assert_done();
+    desk.gdcm(&["analyze", "few.json", "--phase", "lead", "--out", "."]).assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
-    let at = entries(&corrections["schedule"]["table"]).iter().find(|row| row["airspeed_kt"] == 120.0).unwrap();
+    let at = entries(&corrections["schedule"]["table"]).iter().find(|row| row["airspeed_kt"] == 45.0).unwrap();
     let filter = |of: &Value, s: nalgebra::Complex<f64>| {
         let side = |omega: &Value| {
             let x = s / omega.as_f64().unwrap();
@@ -197,7 +197,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         };
         side(&of["zero_rad_s"]) / side(&of["lag_rad_s"])
     };
-    let physics = &crate::EXAMPLE.dataset.conditions()[0];
+    let physics = &crate::FEW.dataset.conditions()[0];
     let nominal = &physics.bundle(gdcm_core::dataset::BundleKind::Physics)[physics.nominal()];
     let gdcm_core::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
     let omega = [0.5, 3.0, 12.0, 120.0];
@@ -227,7 +227,7 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
     }
     let zero_s: f64 = 1.0 / at["lead"]["inputs"]["LAT"]["zero_rad_s"].as_f64().unwrap();
-    let program = "import c\nzi, zo = c.gdcm_leads(120.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
+    let program = "import c\nzi, zo = c.gdcm_leads(45.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
                    print(repr(zi[1]), repr(D[0][0]), len(zo), len(A))";
     if let Ok(output) = Command::new("python3").args(["-c", program]).current_dir(&desk.directory).output() {
         let text = String::from_utf8(output.stdout).unwrap();
@@ -310,10 +310,10 @@ pub(crate) fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
 
 #[test]
 fn octave_reads_the_corrections_as_analyze_writes_them() {
-    let desk = Desk::new();
-    desk.gdcm(&["analyze", "--out", ".", "--schedule-delays"]).assert_done();
+    let desk = Desk::with_few();
+    desk.gdcm(&["analyze", "few.json", "--out", ".", "--schedule-delays"]).assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
-    desk.gdcm(&["export", "--as", "mat", "--out", "c.mat", "--schedule-delays"]).assert_done();
+    desk.gdcm(&["export", "few.json", "--as", "mat", "--out", "c.mat", "--schedule-delays"]).assert_done();
     let program = "load c.mat; for c = corrections.conditions, \
                    printf('%.17g ', c.id, c.G', c.D_s', c.gains.inputs, c.delays_s.outputs, c.J.corrected.mag', c.net_gains'); end; \
                    s = corrections.schedule; printf('%.17g ', s.inputs', s.delays_s.upper_s, s.table.outputs'); \
@@ -340,10 +340,10 @@ fn octave_reads_the_corrections_as_analyze_writes_them() {
 
 #[test]
 fn octave_computes_the_response_of_a_corrected_model() {
-    let desk = Desk::new();
+    let desk = Desk::with_few();
     let path: PathBuf = desk.path("m.json");
     for name in ["m.mat", "m.json"] {
-        desk.gdcm(&["export", "--as", "state-space", "--correction", "own", "--out", name]).assert_done();
+        desk.gdcm(&["export", "few.json", "--as", "state-space", "--correction", "own", "--out", name]).assert_done();
     }
     let program = "load m.mat; for m = models, H = m.C * ((3i * eye(size(m.A)) - m.A) \\ m.B) + m.D; \
                    printf('%.17g ', m.condition, m.Ts, abs(H)'); \
@@ -351,7 +351,7 @@ fn octave_computes_the_response_of_a_corrected_model() {
     let Some(found) = octave(&desk, program) else { return };
     let mut expected = Vec::new();
     for (place, model) in models(&path).iter().enumerate() {
-        expected.extend([crate::EXAMPLE.dataset.conditions()[place].id().0 as f64, 0.0]);
+        expected.extend([crate::FEW.dataset.conditions()[place].id().0 as f64, 0.0]);
         let response = evaluate(&state_space(model), &[3.0]);
         let pairs = (0..6).flat_map(|output| (0..4).map(move |input| Pair { output, input }));
         expected.extend(pairs.map(|pair| response.curve(pair)[0].norm()));
@@ -362,7 +362,7 @@ fn octave_computes_the_response_of_a_corrected_model() {
 
 #[test]
 fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
-    let desk = Desk::new();
+    let desk = Desk::with_few();
     // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
     for ExportFormat { name: format, extension, .. } in EXPORTERS {
@@ -371,7 +371,7 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         } else {
             &format!("{}.{extension}", format.replace('-', "_"))
         };
-        let ended = desk.gdcm(&["export", "--phase", "lead", "--as", format, "--out", name]);
+        let ended = desk.gdcm(&["export", "few.json", "--phase", "lead", "--as", format, "--out", name]);
         assert_eq!((ended.status, ended.error.as_str()), (0, ""), "{format}");
         assert!(ended.out.contains(limit) && ended.out.contains(" dB on LON"), "{format}: {}", ended.out);
         let bytes = fs::read(desk.path(name)).unwrap();
@@ -381,6 +381,6 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         // What no compiler or old editor shows is spelled by its number: none of it stands in what the program itself says.
         assert!(!text.contains("<U+2212>"), "{format}");
     }
-    let without = desk.gdcm(&["export", "--as", "py", "--out", "delays.py"]);
+    let without = desk.gdcm(&["export", "few.json", "--as", "py", "--out", "delays.py"]);
     assert!(!without.out.contains("leads"), "{}", without.out);
 }

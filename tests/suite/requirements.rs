@@ -102,9 +102,9 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
 
 #[test]
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
-    let desk = Desk::new();
+    let desk = Desk::with_few();
     // In a band that ends below twice the crossings of half a turn; to 12 rad/s nothing of the example rests on more.
-    let ended = desk.gdcm(&["requirements", "--phase", "lead", "--band", "0.5", "5", "--out", ".", "--quiet"]);
+    let ended = desk.gdcm(&["requirements", "few.json", "--phase", "lead", "--band", "0.5", "5", "--out", ".", "--quiet"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     let findings = entries(&written["bandwidth"]).iter();
@@ -121,10 +121,10 @@ const RECORDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/example-recor
 
 #[test]
 fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() {
-    let desk = Desk::new();
-    let ended = desk.gdcm(&["requirements", "--records", RECORDS, "--out", ".", "--phase", "lead"]);
+    let desk = Desk::with_few();
+    let ended = desk.gdcm(&["requirements", "few.json", "--records", RECORDS, "--out", ".", "--phase", "lead"]);
     assert_eq!(ended.status, 0, "{ended:?}");
-    let without = "note: conditions 1, 2, 4 to 9, 11: no time histories: no flight record of it was given";
+    let without = "note: condition 7: no time histories: no flight record of it was given";
     assert!(ended.error.contains(without), "{}", ended.error);
     assert!(ended.out.contains("share of time inside the tolerances of 14 CFR part 60"), "{}", ended.out);
     let written = crate::read_json(&desk.path("requirements.json"));
@@ -190,8 +190,8 @@ fn a_table_of_tolerances_is_written_edited_and_used() {
 
 #[test]
 fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
-    let desk = Desk::new();
-    let ended = desk.gdcm(&["requirements", "--attitude-command", "P", "--out", ".", "--quiet"]);
+    let desk = Desk::with_few();
+    let ended = desk.gdcm(&["requirements", "few.json", "--attitude-command", "P", "--out", ".", "--quiet"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     assert_eq!(written["attitude_command"], json!(["P"]));
@@ -211,12 +211,12 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
             swapped += 1;
         }
     }
-    assert!(swapped > 10, "most bandwidths of the example have kept models beside theirs: {swapped}");
+    assert!(swapped > 5, "most bandwidths of the example have kept models beside theirs: {swapped}");
 
     desk.gdcm(&["requirements", "--attitude-command", "X", "--out", "."]).assert_failed(2, &["X"]);
     let levels = r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
     std::fs::write(desk.path("levels.json"), levels).unwrap();
-    let figure = ["figure", "--view", "requirements", "--levels", "levels.json", "--out", "levels.svg"];
+    let figure = ["figure", "few.json", "--view", "requirements", "--levels", "levels.json", "--out", "levels.svg"];
     desk.gdcm(&figure).assert_done();
     assert!(std::fs::read_to_string(desk.path("levels.svg")).unwrap().contains("Level 1 of the tests"));
     std::fs::write(desk.path("levels.json"), "[]]").unwrap();
@@ -256,7 +256,7 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_core::executor::{Executor, Sequential};
     use gdcm_core::study::{Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved};
     use gdcm_files::figure::{Mark, record_history_figure};
-    let dataset = crate::EXAMPLE.dataset.clone();
+    let dataset = crate::FEW.dataset.clone();
     let analysis = Engine::default().analyze(&Study::new(dataset.clone()), &Unobserved).unwrap();
     let channels = gdcm_core::records::RecordChannels::of_dataset(&dataset).of_named_records();
     let table = gdcm_files::example_records(3).unwrap().remove(0);

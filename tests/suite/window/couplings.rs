@@ -26,7 +26,7 @@ fn texts(window: &Window) -> String {
 
 #[test]
 fn couplings_are_looked_at_used_drawn_and_undone() {
-    let mut window = window();
+    let mut window = few_window();
     let before = state(&window).study.clone();
     show(&mut window, View::Couplings);
     assessed(&mut window);
@@ -35,7 +35,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assert!(said.contains("own correction") && said.contains("Loop at the sticks"), "{said}");
     assert_eq!(state(&window).study, before, "looking decides nothing");
     give(&mut window, Action::MapCost(MappedCost::Before));
-    let as_it_is = |window: &Window| cost_of(state(window), ConditionId(1), pair(window, "P", "LON"));
+    let as_it_is = |window: &Window| cost_of(state(window), ConditionId(3), pair(window, "P", "LON"));
     let uncoupled = as_it_is(&window);
     click(&mut window, "Use mixing and feedback");
     settle(&mut window);
@@ -43,7 +43,7 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
     assert!(!texts(&window).contains("None are used"));
     // The map beside the conditions has what they did off the axis.
-    window.get_by_label_contains("19 responses not held, condition 1: mean J of magnitude");
+    window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
     wait_until(&mut window, "the poles", |window| gdcm::view::views::poles(state(window)).is_some());
@@ -88,7 +88,7 @@ fn couplings_are_offered_once_leads_do_what_a_channel_can() {
 
 #[test]
 fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
-    let mut window = window();
+    let mut window = few_window();
     let ids: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
     ids.iter().for_each(|&condition| give(&mut window, Edit::SetHeldOut { condition, held_out: true }));
     give(&mut window, setting::COUPLINGS.to(CouplingCorrection::Mixing));

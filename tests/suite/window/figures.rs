@@ -32,7 +32,7 @@ fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &
 
 #[test]
 fn every_view_is_saved_from_its_header() {
-    let mut window = window();
+    let mut window = few_window();
     let folder = tempfile::tempdir().unwrap();
     wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
     for view in views_with_figure() {
@@ -58,7 +58,7 @@ fn coherence_of_measured_responses_stands_below_their_bode_plot() {
 
 #[test]
 fn a_view_is_saved_in_every_format() {
-    let mut window = window();
+    let mut window = few_window();
     let folder = tempfile::tempdir().unwrap();
     for format in FigureFormat::ALL {
         assert_saved(&mut window, View::NetGain, format, folder.path());

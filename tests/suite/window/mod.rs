@@ -80,6 +80,11 @@ fn warm() -> Setup {
     Setup { engine: Arc::new(|| WARM.fork(Box::new(Pool))), ..Setup::default() }
 }
 
+/// The window on a few conditions of the example, its first results there.
+pub(crate) fn few_window() -> Window {
+    window_with(Opened::Dataset(crate::FEW.clone()), Setup::default())
+}
+
 fn window_with(opened: Opened, setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, opened, setup).expect("a thread can be started")

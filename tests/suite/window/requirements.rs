@@ -21,7 +21,7 @@ fn texts(window: &Window) -> String {
 
 #[test]
 fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
-    let mut window = window();
+    let mut window = few_window();
     show(&mut window, View::Requirements);
     wait_until(&mut window, "the requirements", |window| {
         state(window).requirements().is_some() && !state(window).results.background.is_busy()
@@ -32,7 +32,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     // The numbers are those of the command: one finding a condition, measuring response and role.
     let roles = if state(&window).analysis().unwrap().schedule.is_ok() { 4 } else { 3 };
     let pairs = state(&window).dataset().measuring_pairs().marked().count();
-    assert_eq!(requirements.bandwidth.len(), 11 * pairs * roles);
+    assert_eq!(requirements.bandwidth.len(), 3 * pairs * roles);
     let p_lat = pair(&window, "P", "LAT");
     let id = state(&window).condition().id();
     let corrected = requirements.bandwidth_of(id, p_lat, RequirementRole::Corrected).unwrap();
@@ -66,7 +66,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
 
 #[test]
 fn a_click_on_a_mark_is_of_that_model() {
-    let mut window = window();
+    let mut window = few_window();
     show(&mut window, View::Requirements);
     let requirements = shown_requirements(&mut window);
     let p_lat = pair(&window, "P", "LAT");
@@ -109,7 +109,7 @@ fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_core::study::R
 
 #[test]
 fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
-    let mut window = window();
+    let mut window = few_window();
     show(&mut window, View::Requirements);
     let rate = shown_requirements(&mut window);
     click(&mut window, "attitude of P");
@@ -136,7 +136,7 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
 
 #[test]
 fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
-    let mut window = window();
+    let mut window = few_window();
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
     give(&mut window, Action::ShowTest(true));
@@ -161,7 +161,7 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
 
 #[test]
 fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
-    let mut window = window();
+    let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
@@ -206,7 +206,7 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
 
 #[test]
 fn the_summary_has_what_the_records_that_are_open_say() {
-    let mut window = window();
+    let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
@@ -261,7 +261,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
 
 #[test]
 fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
-    let mut window = window();
+    let mut window = few_window();
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
     give(&mut window, Action::ShowTest(true));
@@ -299,7 +299,7 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
 
 #[test]
 fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_last() {
-    let mut window = window();
+    let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
     give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));

@@ -255,6 +255,7 @@ impl<'a> Gram<'a> {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
         let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
         let columns = self.block_columns();
+        let [resolvent_parts, weight_parts] = [&self.resolvent_scalars, &self.weight_scalars].map(parts);
         for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
             // conj(s_p) goes into the left factor.
             let s = |k: usize| self.weight_scalars[(scalar, k)].conj() * sign;
@@ -262,15 +263,15 @@ impl<'a> Gram<'a> {
             let with_resolvent = self.line_products(order, product);
             let with_weight =
                 self.line_products(outputs, |k, o| (self.weight_product(k, o, vector).conj() * s(k)).conj());
-            let by_resolvent = &with_resolvent * parts(&self.resolvent_scalars);
-            let by_weight = with_weight * parts(&self.weight_scalars);
+            let by_resolvent = &with_resolvent * &resolvent_parts;
+            let by_weight = with_weight * &weight_parts;
             for i in 0..order {
                 (0..resolvent_count).for_each(|s| self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]));
             }
             for o in 0..outputs {
                 (0..weight_count).for_each(|s| self.put(p, self.weight_column(o, s), by_weight[(o, s)]));
             }
-            let by_states = with_resolvent * parts(&self.weight_scalars.rows(0, order).into_owned());
+            let by_states = with_resolvent * weight_parts.columns(0, order);
             for (q, &(other, other_scalar, other_sign)) in columns.iter().enumerate() {
                 self.put(p, q, by_states[(other, other_scalar)] * other_sign);
             }
@@ -313,27 +314,22 @@ fn scalar_products(
     right: &DMatrix<Complex<f64>>,
     pairs: &[(usize, usize)],
 ) -> DMatrix<f64> {
-    let lines = left.ncols();
-    DMatrix::from_iterator(
-        2 * lines,
-        pairs.len(),
-        pairs.iter().flat_map(|&(s, t)| {
-            (0..lines).flat_map(move |k| {
-                let product = left[(s, k)].conj() * right[(t, k)];
-                [product.re, -product.im]
-            })
-        }),
-    )
+    let mut products = DMatrix::zeros(2 * left.ncols(), pairs.len());
+    for (mut column, &(s, t)) in products.column_iter_mut().zip(pairs) {
+        for (k, (left, right)) in left.row(s).iter().zip(right.row(t).iter()).enumerate() {
+            let product = left.conj() * right;
+            (column[2 * k], column[2 * k + 1]) = (product.re, -product.im);
+        }
+    }
+    products
 }
 
 /// `[Re s; Im s]`, two rows a line, one column a scalar.
 fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
-    let lines = scalars.ncols();
-    DMatrix::from_iterator(
-        2 * lines,
-        scalars.nrows(),
-        (0..scalars.nrows()).flat_map(|s| (0..lines).flat_map(move |k| [scalars[(s, k)].re, scalars[(s, k)].im])),
-    )
+    DMatrix::from_fn(2 * scalars.ncols(), scalars.nrows(), |row, s| {
+        let scalar = scalars[(s, row / 2)];
+        if row % 2 == 0 { scalar.re } else { scalar.im }
+    })
 }
 
 #[cfg(test)]

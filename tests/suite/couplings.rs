@@ -146,12 +146,9 @@ fn the_report_has_a_section_on_couplings() {
     let desk = Desk::with_few();
     desk.gdcm(&[&["report", "few.json", "--out", "r.html"], &COUPLED[..]].concat()).assert_done();
     let page = fs::read_to_string(desk.path("r.html")).unwrap();
-    for words in [
-        "Couplings</h",
-        "swashplate phase of ",
-        "Feedback: units of an input",
-        "Poles of the physics representatives",
-    ] {
+    for words in
+        ["Couplings</h", "swashplate phase of ", "Feedback: units of an input", "Poles of the physics representatives"]
+    {
         assert!(page.contains(words), "{words}");
     }
 }

@@ -17,9 +17,9 @@ use gdcm_files::{ReportSource, ReportSubject, example_records, load_dataset, rep
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 
-use crate::{EXAMPLE, FEW};
 use crate::commands::Desk;
 use crate::window::{click, few_window, settle, state};
+use crate::{EXAMPLE, FEW};
 
 const SECTIONS: [&str; 11] = [
     "1 Summary",

@@ -104,7 +104,8 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let desk = Desk::with_few();
     // In a band that ends below twice the crossings of half a turn; to 12 rad/s nothing of the example rests on more.
-    let ended = desk.gdcm(&["requirements", "few.json", "--phase", "lead", "--band", "0.5", "5", "--out", ".", "--quiet"]);
+    let ended =
+        desk.gdcm(&["requirements", "few.json", "--phase", "lead", "--band", "0.5", "5", "--out", ".", "--quiet"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     let findings = entries(&written["bandwidth"]).iter();

@@ -13,7 +13,7 @@ use super::bode::{BodeEvent, BodeScene, InvalidRegion};
 use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
 use super::curve_style::Role;
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, Pixel, curve_lines};
+use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, curve_lines, pixel_of};
 use super::navigation::{Turn, drawn_box_ui, plot_keys, turned};
 use crate::view::controls::elided;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -56,7 +56,7 @@ pub(super) fn pane_ui(
             band_shade(plot, scene.band, palette);
             hatch(plot, scene, palette);
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
-            let pixel = Pixel::of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
+            let pixel = pixel_of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
             let bands = scene.bands.iter().filter(|_| scene.shows_bands != Some(false));
             bands.chain(scene.missing).for_each(|band| draw_band(plot, band, pane, &bounds, palette));

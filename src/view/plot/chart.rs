@@ -10,11 +10,13 @@ use egui_plot::{
     Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotImage, PlotPoint, PlotPoints, PlotUi, Points, Span, VLine,
 };
 
+use gdcm_files::figure::{Pixel, thinned};
+
 use super::Range;
 use super::axes::{
     FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, VERTICAL_TICK_GAP, axis_hints, caption_font, quiet_plot,
 };
-use super::drawn_curves::{Pixel, thinned};
+use super::drawn_curves::pixel_of;
 use super::navigation::{Turn, turned};
 use crate::view::palette::Palette;
 
@@ -313,7 +315,7 @@ fn draw<'a>(plot: &mut PlotUi<'a>, chart: &Chart<'_>, palette: &Palette) {
     let ends = view_of(plot);
     for line in &chart.lines {
         let points = match chart.across {
-            ChartAxis::Linear => in_view(&line.points, ends, pixel_of(plot, &line.points)),
+            ChartAxis::Linear => in_view(&line.points, ends, pixel_in(plot, &line.points)),
             ChartAxis::Frequency(_) => line.points.iter().map(|[x, y]| [place(*x), *y]).collect(),
         };
         let style = if line.dashed { LineStyle::dashed_dense() } else { LineStyle::Solid };
@@ -337,8 +339,8 @@ fn view_of(plot: &PlotUi<'_>) -> [f64; 2] {
 }
 
 /// The pixel of the plot as it was drawn last; where it never was, one of so many that no screen has more.
-fn pixel_of(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
-    let pixel = Pixel::of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
+fn pixel_in(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
+    let pixel = pixel_of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
     if pixel.width.is_finite() && pixel.width > 0.0 {
         return pixel;
     }

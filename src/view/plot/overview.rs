@@ -13,7 +13,7 @@ use gdcm_files::figure::{Range, decimals};
 use super::axes::{caption_font, message_ui};
 use super::bode::PANES;
 use super::curve_menu::{CurveWish, model_wishes_ui};
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane, Pixel, curve_lines};
+use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane, curve_lines, pixel_of};
 use super::navigation::nearest;
 use crate::view::controls::{elided, row_text};
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -301,7 +301,7 @@ impl Sketch {
             PlotTransform::new(rect, bounds, false)
         });
         let Some(transform) = &self.transform else { return };
-        let pixel = Pixel::of(transform, painter.pixels_per_point(), TOLERANCE);
+        let pixel = pixel_of(transform, painter.pixels_per_point(), TOLERANCE);
         self.drawn.update(curves, pane, (*transform.bounds(), pixel), palette);
         let mut order: Vec<(usize, &BodeCurve)> = curves.iter().enumerate().collect();
         order.sort_by_key(|(_, curve)| (curve.highlighted, curve.role.layer(curve.rejected)));

@@ -45,6 +45,7 @@ mod requirements;
 mod responses;
 mod role;
 mod tables;
+mod thinning;
 
 pub use assessment::*;
 pub use axis::*;
@@ -62,6 +63,7 @@ pub use poles::*;
 pub use requirements::*;
 pub use responses::*;
 pub use role::*;
+pub use thinning::{Pixel, thinned};
 
 /// Which of the program's figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,7 +1,7 @@
 //! A figure becomes shapes and texts at their places.
 
 use super::axis::{Axis, Range};
-use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text, simplified};
+use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text};
 use super::figure::{
     Along, Bars, Bracket, Brackets, ColumnWidth, Curve, DotShape, Dots, Envelope, Figure, Guide, Intervals, Mark, Note,
     Panel, Place, Rule, Spans,
@@ -9,6 +9,7 @@ use super::figure::{
 use super::label_places::{LabelledDot, Surroundings, place_labels};
 use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
 use super::role::{Entry, Sample};
+use super::thinning::{Pixel, thinned};
 
 /// Size of the title \[pt\].
 const TITLE_PT: f64 = 8.5;
@@ -18,6 +19,7 @@ const TITLE_LINE: f64 = 11.0;
 const MARGIN: f64 = 3.0;
 /// How far a line may be from the points that it stands for \[pt\]: a tenth of the finest line.
 const TOLERANCE: f64 = 0.04;
+const FINEST: Pixel = Pixel { width: TOLERANCE, tolerance: TOLERANCE };
 /// From the middle of a line of letters down to its base, as a part of their size.
 const HALF_HEIGHT: f64 = 0.34;
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
@@ -279,7 +281,7 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
         curve.points().map(|point| placed.at(point).filter(|place| place.iter().all(|c| c.abs() < 1e6))).collect();
     let runs = points.split(Option::is_none).map(|run| run.iter().copied().flatten().collect::<Vec<[f64; 2]>>());
     let lines = runs.filter(|run| run.len() > 1);
-    lines.map(|run| Shape::line(simplified(&run, TOLERANCE), curve.stroke)).collect()
+    lines.map(|run| Shape::line(thinned(&run, FINEST), curve.stroke)).collect()
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {

@@ -161,7 +161,7 @@ impl Page {
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
         let bare = Figure { title: String::new(), caption: String::new(), ..figure.clone() };
-        let drawing = bare.drawing(ColumnWidth::Double).simplified(TOLERANCE_PT);
+        let drawing = bare.drawing(ColumnWidth::Double).thinned(TOLERANCE_PT);
         let drawing = Drawing { title: title.to_owned(), ..drawing };
         let svg = inline_svg(&drawing, &format!("f{}-", self.figures));
         let caption = format!("Figure {}. {title}. {caption}", self.figures);

@@ -328,7 +328,7 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
     late_dataset(&desk.path("."));
     let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv"];
     let identified = |into: &str, more: &[&str], out: &str| {
-        let into = ["--into", into, "--condition", "7", "--out", out];
+        let into = ["--into", into, "--condition", "7", "--band", "0.5", "9", "--out", out];
         let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         let models = crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();

@@ -222,6 +222,9 @@ fn missing_display() -> Option<String> {
 
 fn no_window(reason: &str, command: &str) -> String {
     let reason = reason.lines().next().unwrap_or(reason).trim_end_matches('.');
+    // winit says first where in its source the system refused: "os error at src/linux.rs:788: no connection".
+    let at = reason.split_once("os error at ").and_then(|(_, at)| at.split_once(": "));
+    let reason = at.map_or(reason, |(_, what)| what);
     format!("the window could not be opened: {reason}. Without a window: {command}")
 }
 
@@ -244,6 +247,8 @@ mod tests {
         let words = ending(fault(), None, &headless(Some(Path::new("a.json")), false)).unwrap_err();
         assert!(words.starts_with("the window could not be opened: no libxkbcommon"), "{words}");
         assert!(words.ends_with("Without a window: gdcm analyze \"a.json\" --out results"), "{words}");
+        let words = no_window("winit EventLoopError: os error at /a/linux/mod.rs:788: no connection", "gdcm analyze");
+        assert_eq!(words, "the window could not be opened: no connection. Without a window: gdcm analyze");
         let folder = tempfile::tempdir().unwrap();
         let autosave = Autosave::start(
             Some(folder.path()),

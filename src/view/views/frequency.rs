@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use egui::Ui;
 use gdcm_core::dataset::{Band, ModelId, Pair};
-use gdcm_core::fidelity::{MAGNITUDE_WEIGHT, PHASE_WEIGHT};
+use gdcm_core::fidelity::summand;
 use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
 use gdcm_core::units::telling;
@@ -305,12 +305,12 @@ fn difference_cell(
     }
 }
 
-/// The frequency within the band at which what J is made of is greatest: `W_g e_dB^2 + W_p e_deg^2` (M4).
+/// The frequency within the band at which what J is made of is greatest (M4).
 fn largest_error((corrected, identified): (&BodeCurve, &BodeCurve), (min, max): (f64, f64)) -> Option<f64> {
     let error = |omega: f64| {
         let [db, deg] = PANES.map(|pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?));
         let deg = wrap(deg?.to_radians()).to_degrees();
-        Some(MAGNITUDE_WEIGHT * db?.powi(2) + PHASE_WEIGHT * deg.powi(2))
+        Some(summand(db?, deg))
     };
     let within = corrected.omega.iter().copied().filter(|omega| (min..=max).contains(omega));
     let errors = within.filter_map(|omega| Some((omega, error(omega)?)));

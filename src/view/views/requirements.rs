@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 use gdcm_core::dataset::{ConditionId, Pair};
+use gdcm_core::fidelity::ACCEPTABLE;
 use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
 use gdcm_core::study::{
     Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table,
@@ -371,9 +372,6 @@ fn summary_look(requirements: &Requirements, table: &Table, (row, column): (usiz
     };
     cost.map(|cost| if cost > ACCEPTABLE { Hue::Warning } else { Hue::Good })
 }
-
-/// J up to which a model is acceptable (M4).
-const ACCEPTABLE: f64 = 100.0;
 
 /// What the plots of bandwidth say.
 struct BandwidthWords<'a> {

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::{CouplingCondition, CouplingProblem};
 use crate::dataset::{ConditionId, Pair, PairTable};
-use crate::fidelity::{COST_SCALE, PHASE_WEIGHT};
+use crate::fidelity::summand;
 
 /// Weight of an on-axis response beside the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
@@ -90,7 +90,7 @@ impl<'a> WeightedCondition<'a> {
     /// `q^2` of each output of an input column at a frequency, where the last pass has `H_c = coupled`; false where none counts.
     ///
     /// ```text
-    /// q^2 = s^2 W / max(|R'|, |H_c| / 2)^2 / (1 + (e s / 10)^2)^(1/2),   e^2 = 20 (20 log10 |H_c / R'|)^2 + 20 0.0175 (deg)^2
+    /// q^2 = s^2 W / max(|R'|, |H_c| / 2)^2 / (1 + (e s / 10)^2)^(1/2),   e^2: the summand of J (M4)
     /// ```
     pub(super) fn squared_weights(
         &self,
@@ -115,7 +115,7 @@ impl FixedWeight {
         let (of_coupled, of_flight) = (coupled.norm_sqr(), flight.norm_sqr());
         let db = 10.0 * (of_coupled / of_flight).log10();
         let deg = (coupled * flight.conj()).arg().to_degrees();
-        let error = COST_SCALE * (db * db + PHASE_WEIGHT * deg * deg);
+        let error = summand(db, deg);
         let robust = (1.0 + error * (self.s / OUTLIER).powi(2)).sqrt();
         let squared = self.s * self.s * self.coherence / of_flight.max(0.25 * of_coupled) / robust;
         // A value of zero has no decibels, and beyond the largest numbers there is nothing to compare.

@@ -8,14 +8,19 @@ use serde::{Deserialize, Serialize};
 use crate::response::{PolarCurve, mean, median, weighted_median};
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g`.
-pub const MAGNITUDE_WEIGHT: f64 = 1.0;
+const MAGNITUDE_WEIGHT: f64 = 1.0;
 /// Weight of the squared phase error \[deg^2\], `W_p`.
-pub const PHASE_WEIGHT: f64 = 0.0175;
+const PHASE_WEIGHT: f64 = 0.0175;
 /// J up to which a model is acceptable.
 pub const ACCEPTABLE: f64 = 100.0;
 
 /// Factor before both parts of J.
-pub(crate) const COST_SCALE: f64 = 20.0;
+const COST_SCALE: f64 = 20.0;
+
+/// What J averages over frequency, at one of them: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
+pub fn summand(error_db: f64, error_deg: f64) -> f64 {
+    COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
+}
 
 /// How squared errors are averaged over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -70,6 +75,16 @@ impl Cost {
         scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
         let phase = COST_SCALE * PHASE_WEIGHT * average.of(scratch, weights);
         Self { magnitude, phase }
+    }
+
+    /// What the averages of the squared errors are multiplied by, `20 W_g` and `20 W_p`, in words.
+    pub(crate) fn factors() -> [String; 2] {
+        [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
+    }
+
+    /// The averages of the squared errors \[dB^2, deg^2\].
+    pub(crate) fn averages(self) -> [f64; 2] {
+        [self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT), self.phase / (COST_SCALE * PHASE_WEIGHT)]
     }
 
     /// `J = J_mag + J_phase`.

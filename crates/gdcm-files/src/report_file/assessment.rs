@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use gdcm_core::dataset::{ConditionId, Pair, PairTable};
+use gdcm_core::fidelity::ACCEPTABLE;
 use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{
     Analysis, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table, difference_table,
@@ -75,7 +76,7 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     let table = AssessmentTable::of(analysis, choice);
     page.paragraph(&format!(
         "Change of J of the nominal model of each condition under the scheduled correction, against the identified representative; \
-         below 0 is better. J takes {} over frequency; up to 100 is acceptable, up to 50 next to indistinguishable.",
+         below 0 is better. J takes {} over frequency; up to {ACCEPTABLE} is acceptable, up to 50 next to indistinguishable.",
         average_word(choice.average)
     ));
     page.list(table.left_out.iter().map(|of| format!("Condition {} is left out: {}.", of.condition, of.why)));

@@ -1,7 +1,7 @@
 //! How scores and discontinuity ratios were computed (M5).
 
 use crate::dataset::Origin;
-use crate::fidelity::{PHASE_WEIGHT, SUGGESTION_RATIO};
+use crate::fidelity::SUGGESTION_RATIO;
 
 use super::*;
 
@@ -98,18 +98,18 @@ const SECTION: &str = "M4, eq. (14) to (19)";
 
 fn equation(average: CostAverage) -> String {
     let word = average_word(average);
-    format!("J = 20 · 1 · {word}_ω(ΔdB²) + 20 · {PHASE_WEIGHT} · {word}_ω(Δφ²), dB and degrees")
+    let [of_db, of_deg] = Cost::factors();
+    format!("J = {of_db} · {word}_ω(ΔdB²) + {of_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
 /// J of a mismatch under a correction, in two steps and their sum.
 fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
     let word = average_word(average);
-    // 20 W of each part is what the squares were multiplied by.
-    let (db_squared, deg_squared) = (cost.magnitude / 20.0, cost.phase / (20.0 * PHASE_WEIGHT));
+    let ([of_db, of_deg], [db_squared, deg_squared]) = (Cost::factors(), cost.averages().map(digits));
     let (magnitude, phase, total) = (digits(cost.magnitude), digits(cost.phase), digits(cost.total()));
     vec![
-        format!("{symbol}_mag = 20 · 1 · {} dB² = {magnitude}   ({word} of the squares)", digits(db_squared)),
-        format!("{symbol}_phase = 20 · {PHASE_WEIGHT} · {} deg² = {phase}", digits(deg_squared)),
+        format!("{symbol}_mag = {of_db} · {db_squared} dB² = {magnitude}   ({word} of the squares)"),
+        format!("{symbol}_phase = {of_deg} · {deg_squared} deg² = {phase}"),
         format!("{symbol} = {magnitude} + {phase} = {total}"),
     ]
 }

@@ -6,17 +6,11 @@ mod exports;
 pub mod figure;
 mod figure_file;
 mod file_error;
-mod importer;
+mod formats;
 mod json_text;
-mod json_values;
 mod location;
-mod logs;
-mod mat;
-mod mat73;
 mod model_files;
 mod models_file;
-mod npy;
-mod octave;
 mod output_set;
 mod recognise;
 mod record_files;
@@ -26,10 +20,8 @@ mod rules_file;
 mod source;
 mod strides;
 mod study_file;
-mod text;
 mod user_state;
 pub mod variables;
-mod zip_files;
 
 pub use corrections_file::*;
 pub use dataset_file::{
@@ -42,13 +34,14 @@ pub use exports::{
 pub use figure_file::{csv_text, figure_format, save_tables, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
 
+pub use formats::mat::write as write_mat;
+pub use formats::npy::write_npz;
+pub use formats::text::UnsaidUnit;
+pub use formats::{FolderProgress, sources_folder};
 pub use gdcm_core::dataset::limits::LARGEST_TEXT;
-pub use importer::{FolderProgress, sources_folder};
 pub use json_text::write_pretty;
-pub use mat::write as write_mat;
 pub use model_files::{EVERY_TABLE, FoundModels, models_of_bytes, read_models};
 pub use models_file::{IdentifiedModels, add_identified, add_models};
-pub use npy::write_npz;
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use record_files::{
     EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
@@ -64,5 +57,4 @@ pub use study_file::{
     Opened, OpenedStudy, STUDY_EXTENSION, holds_models, load_any, open_study, open_study_of, relative_folder,
     save_study,
 };
-pub use text::UnsaidUnit;
 pub use user_state::{LostStudy, RecoveryFile, add_recent_file, is_first_start, lost_studies, recent_files};

@@ -10,13 +10,13 @@ use gdcm_core::dataset::{
 };
 
 use crate::file_error::FileError;
-use crate::importer::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
-use crate::models_file::{bare_draft, labels};
-use crate::recognise::{Found, recognise};
-use crate::text::{
+use crate::formats::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit, read_matrices,
     read_matrix, read_table, says_quantity, split_complex,
 };
+use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
+use crate::models_file::{bare_draft, labels};
+use crate::recognise::{Found, recognise};
 use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
 
 /// The headings of every table of as many columns, among those of single files.

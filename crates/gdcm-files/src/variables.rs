@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_core::message_text::shortened_name;
 
-use crate::importer::MOST_MEMORY;
+use crate::formats::MOST_MEMORY;
 
 // Numbers in an array of any number of dimensions.
 
@@ -511,7 +511,7 @@ mod limits_tests {
     use gdcm_core::units::number;
 
     use super::MOST_WORK;
-    use crate::importer::{DEEPEST, LARGEST_FILE, MOST_FILES, MOST_MEMORY};
+    use crate::formats::{DEEPEST, LARGEST_FILE, MOST_FILES, MOST_MEMORY};
     use crate::recognise::{DEEPEST as DEEPEST_VALUE, MOST_FOUND};
     use crate::record_files::MOST_RECORDS;
     use crate::study_file::MOST_VARIANTS;

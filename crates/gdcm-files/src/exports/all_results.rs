@@ -9,7 +9,7 @@ use serde_json::{Value as Tree, json};
 use super::matlab_struct::{Layout, cell_of_texts};
 use super::{Export, ExportFormat, Exported};
 use crate::corrections_file::{channel_table, corrections, write_corrections};
-use crate::mat;
+use crate::formats::mat;
 use crate::variables::{Value, Variable};
 
 /// `corrections.json`.

@@ -15,9 +15,9 @@ use gdcm_core::units::{number, telling};
 
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
 use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
-use crate::mat;
+use crate::formats::mat;
+use crate::formats::npy::write_npz;
 use crate::models_file::{bare_draft, labels, write_models};
-use crate::npy::write_npz;
 use crate::variables::{TextArray, Value, Variable};
 
 /// Corrected models, in the format that the end of the file's name says.
@@ -373,8 +373,8 @@ mod tests {
 
     use super::*;
     use crate::embedded_example;
+    use crate::formats::zip_files::read_npz;
     use crate::variables::ReadingBudget;
-    use crate::zip_files::read_npz;
 
     #[test]
     fn numpy_and_matlab_get_the_same_matrices_and_names() {

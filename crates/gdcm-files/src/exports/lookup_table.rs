@@ -10,7 +10,7 @@ use super::programs::comment;
 use super::scheduled::{Scheduled, number};
 use super::{ExportFault, ExportFormat, Exported};
 use crate::figure::all_channels;
-use crate::mat;
+use crate::formats::mat;
 use crate::variables::{Value, Variable};
 
 /// The lookup table in text.
@@ -354,7 +354,7 @@ mod tests {
     use super::super::ExportSource;
     use super::*;
     use crate::embedded_example;
-    use crate::text::read_table;
+    use crate::formats::text::read_table;
     use crate::variables::{ReadingBudget, Value};
 
     #[test]

@@ -18,13 +18,11 @@ use gdcm_core::dataset::ConditionRecord;
 use gdcm_core::records::{ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
 
 use crate::file_error::FileError;
-use crate::importer::{
-    Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file,
-};
+use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table, sections};
+use crate::formats::{Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file};
 use crate::recognise::{Found, search};
 use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
 use crate::study_file::relative_folder;
-use crate::text::{NumberedText, TextTable, numbered_words, read_table, sections};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
 /// Most records of one file.
@@ -778,7 +776,7 @@ mod tests {
             Variable { name: "fdata".into(), value: Value::Array(Array::matrix(rows as usize, 4, values.clone())) },
             Variable { name: "varlab".into(), value: Value::Text(TextArray { shape: vec![4, 1], texts }) },
         ];
-        let bytes = crate::mat::write(&variables).unwrap();
+        let bytes = crate::formats::mat::write(&variables).unwrap();
         let found = records_of_bytes(&bytes, "flight.mat", &ReadingBudget::default()).unwrap();
         let [table] = found.tables.as_slice() else { panic!("one record: {found:?}") };
         let columns: Vec<(&str, Option<&str>)> =

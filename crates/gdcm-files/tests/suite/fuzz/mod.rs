@@ -13,7 +13,7 @@
 mod hdf5;
 mod logs;
 mod matlab;
-#[path = "../../../src/mat/sample_tests.rs"]
+#[path = "../../../src/formats/mat/sample_tests.rs"]
 #[expect(dead_code, reason = "the readers' own tests use the rest")]
 mod matlab_files;
 mod octave;

@@ -1,0 +1,372 @@
+//! Matrices as text: one in a file, or several under their names, as programs print them.
+
+use crate::formats::text::columns::{TextTable, comment, is_rule, read_table};
+use crate::formats::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
+use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
+
+/// Matrices read from a text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMatrices {
+    /// The matrices in their order.
+    pub variables: Vec<Variable>,
+    /// What was passed over or decided, in words.
+    pub notes: Vec<String>,
+}
+
+/// Reads one matrix, a row on each line; a line of names above it is passed over.
+pub fn read_matrix(text: &str, name: &str, budget: &ReadingBudget) -> Result<Variable, VariableFault> {
+    let table = read_table(text, budget)?;
+    if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
+        let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
+        return Err(VariableFault::line(name, *line, what));
+    }
+    let value = matrix(&[table], 1.0, budget, name)?;
+    Ok(Variable { name: name.to_owned(), value })
+}
+
+/// Reads matrices under their names: "A =", "A:" or "A" on a line, its rows on those below.
+///
+/// A common factor ("1.0e+03 *") is applied, columns that are printed in several parts ("Columns 1 through 6") are put together,
+/// and names of rows and columns are passed over.
+pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
+    refuse_binary(text, "matrices under their names")?;
+    let mut reading = Reading { found: Vec::new(), notes: Vec::new(), budget };
+    for (number, line) in lines(text) {
+        budget.work(1, "")?;
+        if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
+            reading.line(number, line)?;
+        }
+    }
+    reading.finish()
+}
+
+/// Numbers of lines and rows that are printed together.
+#[derive(Default)]
+struct Part {
+    numbers: Vec<usize>,
+    text: String,
+}
+
+struct Begun {
+    name: String,
+    line: usize,
+    /// Whether an equals sign stands behind the name, so that a single word below it names a column.
+    assigned: bool,
+    scale: f64,
+    /// Whether the rows have names.
+    labelled: bool,
+    parts: Vec<Part>,
+}
+
+struct Reading<'m> {
+    found: Vec<Begun>,
+    notes: Vec<String>,
+    budget: &'m ReadingBudget<'m>,
+}
+
+impl Reading<'_> {
+    fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        let awaits_columns = self.found.last().is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty());
+        match name_line(line) {
+            Some(NameLine { assigned: false, .. }) if awaits_columns => return self.columns(number, line),
+            Some(NameLine { name, assigned, rest }) => return self.begin(number, name, assigned, rest),
+            None => {}
+        }
+        if is_columns_line(line) {
+            self.part();
+            return Ok(());
+        }
+        if let (Some(scale), Some(matrix)) = (scale_line(line), self.found.last_mut()) {
+            matrix.scale = scale;
+            return Ok(());
+        }
+        let numbers = line.split_whitespace().filter(|word| is_number_word(word)).count();
+        let words = line.split_whitespace().count();
+        let labelled = self.found.last().is_some_and(|matrix| matrix.labelled);
+        let cut = line.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest);
+        match cut {
+            _ if row_of_numbers(line) => self.row(number, line),
+            Some(rest) if labelled && row_of_numbers(rest) => self.row(number, rest),
+            _ if numbers == 0 && awaits_columns | labelled => self.columns(number, line),
+            _ if 2 * numbers >= words => {
+                Err(VariableFault::line("", number, format!("\"{}\" is no row of numbers; correct it", excerpt(line))))
+            }
+            _ => {
+                self.notes.push(format!("line {number} (\"{}\") is passed over", excerpt(line)));
+                Ok(())
+            }
+        }
+    }
+
+    fn begin(&mut self, number: usize, name: &str, assigned: bool, rest: &str) -> Result<(), VariableFault> {
+        self.budget.take(256 + name.len() as u64, 1, name)?;
+        let (name, parts) = (name.to_owned(), Vec::new());
+        self.found.push(Begun { name, line: number, assigned, scale: 1.0, labelled: false, parts });
+        if rest.is_empty() { Ok(()) } else { self.row(number, rest) }
+    }
+
+    /// A line of names of columns: rows below it have names too.
+    fn columns(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        if let Some(matrix) = self.found.last_mut() {
+            matrix.labelled = true;
+        }
+        self.notes.push(format!("line {number} (\"{}\") is taken as names of columns", excerpt(line)));
+        self.part();
+        Ok(())
+    }
+
+    fn part(&mut self) {
+        if let Some(matrix) = self.found.last_mut()
+            && matrix.parts.last().is_none_or(|part| !part.numbers.is_empty())
+        {
+            matrix.parts.push(Part::default());
+        }
+    }
+
+    fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
+        let Some(matrix) = self.found.last_mut() else {
+            let what = "numbers without a name; write the name of the matrix on a line above them".to_owned();
+            return Err(VariableFault::line("", number, what));
+        };
+        self.budget.take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
+        if matrix.parts.is_empty() {
+            matrix.parts.push(Part::default());
+        }
+        if let Some(part) = matrix.parts.last_mut() {
+            part.numbers.push(number);
+            part.text.push_str(line);
+            part.text.push('\n');
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<NamedMatrices, VariableFault> {
+        let Self { found, mut notes, budget } = self;
+        let mut variables: Vec<Variable> = Vec::with_capacity(found.len());
+        let mut names = std::collections::HashSet::with_capacity(found.len());
+        for Begun { name, line, scale, mut parts, .. } in found {
+            parts.retain(|part| !part.numbers.is_empty());
+            if parts.is_empty() {
+                notes.push(format!("line {line} (\"{name}\") is passed over: no numbers follow"));
+                continue;
+            }
+            if !names.insert(name.clone()) {
+                return Err(VariableFault::Duplicate { name });
+            }
+            if scale != 1.0 {
+                notes.push(format!("{name} is printed with the factor {scale:e}, and so with few digits"));
+            }
+            let tables = parts.iter().map(|part| table(part, &name, budget)).collect::<Result<Vec<_>, _>>()?;
+            let value = matrix(&tables, scale, budget, &name)?;
+            variables.push(Variable { name, value });
+        }
+        if variables.is_empty() {
+            return Err(VariableFault::format("matrices under their names", "no name with numbers below it"));
+        }
+        Ok(NamedMatrices { variables, notes })
+    }
+}
+
+fn is_number_word(word: &str) -> bool {
+    let word = word.trim_end_matches([',', ';']);
+    !word.is_empty() && is_number(word)
+}
+
+/// Whether a line consists of numbers, whatever stands between them.
+fn row_of_numbers(line: &str) -> bool {
+    let mut words =
+        line.split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|').filter(|w| !w.is_empty());
+    words.clone().next().is_some() && words.all(is_number_word)
+}
+
+/// The rows of a part; faults name the line of the whole text.
+fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
+    let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
+    let table = read_table(&part.text, budget).map_err(|fault| match fault {
+        VariableFault::Line { line, what, .. } => VariableFault::line(name, place(line), what),
+        other => other,
+    })?;
+    match table.skipped.first() {
+        Some((line, text)) => {
+            let what = format!("\"{}\" is no row like the others; complete it", excerpt(text));
+            Err(VariableFault::line(name, place(*line), what))
+        }
+        None => Ok(table),
+    }
+}
+
+/// Tables side by side as one matrix.
+fn matrix(tables: &[TextTable], scale: f64, budget: &ReadingBudget, name: &str) -> Result<Value, VariableFault> {
+    let rows = tables.first().map_or(0, |table| table.lines.len());
+    if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
+        let found = other.lines.len();
+        let what = format!("parts of this matrix have {rows} and {found} rows; print it in one part");
+        return Err(VariableFault::line(name, other.lines.first().copied().unwrap_or(1), what));
+    }
+    let columns = tables.iter().map(|table| table.columns.len()).sum();
+    budget.take((rows * columns) as u64, 8, name)?;
+    let values = tables.iter().flat_map(|table| table.columns.iter().flatten()).map(|value| scale * value).collect();
+    Ok(Value::Array(Array::matrix(rows, columns, values)))
+}
+
+// Lines that programs print above the rows of a matrix.
+
+/// A line that names a matrix.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct NameLine<'t> {
+    /// The name.
+    pub(super) name: &'t str,
+    /// Whether an equals sign stands behind it.
+    pub(super) assigned: bool,
+    /// Numbers on the same line.
+    pub(super) rest: &'t str,
+}
+
+/// Reads "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
+pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
+    let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
+    let end = line.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).unwrap_or(line.len());
+    let (name, behind) = line.split_at(end);
+    if is_number(name) || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
+        return None;
+    }
+    let behind = behind.trim_start();
+    if let Some(rest) = behind.strip_prefix('=') {
+        return Some(NameLine { name, assigned: true, rest: without_size(rest.trim()) });
+    }
+    let rest = without_size(behind.strip_prefix(':').unwrap_or(behind).trim());
+    rest.is_empty().then_some(NameLine { name, assigned: false, rest })
+}
+
+/// A text without a size in front of it: "(3x2)", "\[3 x 2\]", "3x2".
+fn without_size(text: &str) -> &str {
+    let inner = text.trim_start_matches(['(', '[']);
+    let (size, rest) = inner.split_at(inner.find([')', ']']).unwrap_or(inner.len()));
+    let Some((rows, columns)) = size.split_once(['x', '×']) else { return text };
+    let count = |word: &str| !word.trim().is_empty() && word.trim().bytes().all(|byte| byte.is_ascii_digit());
+    if count(rows) && count(columns) { rest.trim_start_matches([')', ']']).trim() } else { text }
+}
+
+/// The factor of a line such as "1.0e+03 *".
+pub(super) fn scale_line(line: &str) -> Option<f64> {
+    let factor = line.trim().strip_suffix('*')?.trim();
+    factor.parse().ok().filter(|factor: &f64| factor.is_finite())
+}
+
+/// Whether a line says which columns follow: "Columns 1 through 6", "Column 7:".
+pub(super) fn is_columns_line(line: &str) -> bool {
+    let mut words = line.trim().trim_end_matches(':').split_whitespace();
+    matches!(words.next(), Some("Columns" | "Column"))
+        && words.all(|word| matches!(word, "through" | "and" | "to") || word.bytes().all(|byte| byte.is_ascii_digit()))
+}
+
+#[cfg(test)]
+mod matrix_text_tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn read(text: &str) -> Result<NamedMatrices, VariableFault> {
+        read_matrices(text, &ReadingBudget::new(1 << 22))
+    }
+
+    fn arrays(text: &str) -> Vec<(String, Array)> {
+        let array = |variable: Variable| match variable.value {
+            Value::Array(array) => (variable.name, array),
+            other => panic!("{}", other.words()),
+        };
+        read(text).unwrap().variables.into_iter().map(array).collect()
+    }
+
+    #[test]
+    fn one_matrix_fills_a_file() {
+        let budget = ReadingBudget::new(1 << 20);
+        let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &budget).unwrap();
+        let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
+        assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
+        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget).unwrap_err().to_string();
+        assert_eq!(ragged, "variable A: line 1: one number, where other rows have 2; complete the row");
+    }
+
+    #[test]
+    fn matrices_stand_below_their_names() {
+        let found = arrays("# model\nA =\n\n  -1.0  2\n   0  1\n\nB:\n0\n1\nC (1x2)\n1;0,5\nx0 = 5\n");
+        let matrix = |rows, columns, values: &[f64]| Array::matrix(rows, columns, values.to_vec());
+        assert_eq!(found[0], ("A".to_owned(), matrix(2, 2, &[-1.0, 0.0, 2.0, 1.0])));
+        assert_eq!(found[1], ("B".to_owned(), matrix(2, 1, &[0.0, 1.0])));
+        assert_eq!(found[2], ("C".to_owned(), matrix(1, 2, &[1.0, 0.5])));
+        assert_eq!(found[3], ("x0".to_owned(), matrix(1, 1, &[5.0])));
+    }
+
+    #[test]
+    fn factors_and_parts_are_put_together() {
+        let text = "A =\n\n   1.0e+03 *\n\n  Columns 1 through 2\n\n    0.001  2\n    0.003  4\n\n  Column 3\n\n    5\n    6\n";
+        let found = arrays(text);
+        assert_eq!(found[0].1, Array::matrix(2, 3, vec![1.0, 3.0, 2000.0, 4000.0, 5000.0, 6000.0]));
+    }
+
+    #[test]
+    fn a_printed_model_with_names_of_states_is_read() {
+        let text = "sys =\n \n  A = \n       x1   x2\n   x1  -1    2\n   x2   0    1\n \n  B = \n       u1\n   x1   0\n   x2   1\n \
+                    \nContinuous-time state-space model.\n";
+        let found = arrays(text);
+        assert_eq!(found.len(), 2);
+        assert_eq!(found[0].1, Array::matrix(2, 2, vec![-1.0, 0.0, 2.0, 1.0]));
+        assert_eq!(found[1], ("B".to_owned(), Array::matrix(2, 1, vec![0.0, 1.0])));
+    }
+
+    #[test]
+    fn faults_name_the_line_and_the_matrix() {
+        let message = |text: &str| read(text).unwrap_err().to_string();
+        assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
+        assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
+        assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
+        assert_eq!(message("A\n1\nA\n2\n"), "the name \"A\" stands twice; rename one");
+        assert!(message("A =\n").contains("no name with numbers below it"));
+    }
+
+    proptest! {
+        #[test]
+        fn matrices_printed_come_back(values in prop::collection::vec(-1e9..1e9, 6), three: bool) {
+            let (rows, columns) = if three { (3, 2) } else { (2, 3) };
+            let array = Array::matrix(rows, columns, values);
+            let row = |row: usize| (0..columns).map(|c| array.re[c * rows + row].to_string()).collect::<Vec<_>>().join("  ");
+            let text = format!("M =\n{}\n", (0..rows).map(row).collect::<Vec<_>>().join("\n"));
+            prop_assert_eq!(&arrays(&text)[0].1, &array);
+        }
+
+        #[test]
+        fn any_text_is_read_or_refused(text in "[A-Cx0-9=:;,. \\n\\-e*+]{0,120}") {
+            let _ = read(&text);
+            let _ = read_matrix(&text, "A", &ReadingBudget::new(1 << 20));
+        }
+    }
+}
+
+#[cfg(test)]
+mod printed_line_tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_alone_or_before_a_sign() {
+        let line = |text| name_line(text).map(|NameLine { name, assigned, rest }| (name, assigned, rest));
+        assert_eq!(line("A"), Some(("A", false, "")));
+        assert_eq!(line("  A =  "), Some(("A", true, "")));
+        assert_eq!(line("sys.A = 5"), Some(("sys.A", true, "5")));
+        assert_eq!(line("A: (3 x 2)"), Some(("A", false, "")));
+        assert_eq!(line("A 3x2"), Some(("A", false, "")));
+        assert_eq!(line("A,,,"), Some(("A", false, "")));
+        for text in ["1 2", "nan", "x1 2 3", "x1 x2", "", "(A)"] {
+            assert_eq!(line(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn factors_and_columns_are_seen() {
+        assert_eq!(scale_line("   1.0e+03 *"), Some(1000.0));
+        assert_eq!(scale_line("1 2"), None);
+        assert!(
+            is_columns_line(" Columns 1 through 6") && is_columns_line("Column 7:") && !is_columns_line("Column a")
+        );
+    }
+}

@@ -1,0 +1,153 @@
+//! Files in zip archives.
+
+use std::collections::HashSet;
+use std::io::Read;
+use std::path::Path;
+
+use flate2::bufread::DeflateDecoder;
+use rawzip::{CompressionMethod, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
+
+use crate::file_error::FileError;
+use crate::formats::npy::read_npy;
+use crate::formats::{Contents, Importer, importer_of, is_known};
+use crate::variables::{ReadingBudget, Variable, VariableFault};
+
+/// The most bytes that one byte of deflate (RFC 1951) can become.
+const LARGEST_RATIO: u64 = 1032;
+
+/// How many bytes are unpacked before the budget is asked again.
+const CHUNK: u64 = 1 << 20;
+
+/// What the name of every array of NumPy ends with.
+const ARRAY: &str = ".npy";
+
+/// Zip archives: arrays of NumPy (`.npz`), and files of any other format.
+pub(crate) const ZIP: Importer = Importer {
+    name: "a zip archive",
+    endings: &["npz", "zip"],
+    recognises: |bytes, _| matches!(bytes, [b'P', b'K', 3 | 5, ..]),
+    read: |bytes, path, budget| read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault)),
+};
+
+/// The arrays and the other files of an archive; archives in archives are not read.
+pub(crate) fn read_archive(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Contents, VariableFault> {
+    let (mut names, mut variables) = (HashSet::new(), Vec::new());
+    let (mut files, mut ignored) = (Vec::new(), Vec::new());
+    visit_files(bytes, |file| {
+        // A few bytes in the archive's directory become a variable or a file, whatever it holds.
+        budget.take(1, (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64, "")?;
+        let path = Path::new(file.path);
+        if let Some(name) = file.path.strip_suffix(ARRAY) {
+            if !names.insert(name.to_owned()) {
+                return Err(VariableFault::Duplicate { name: name.to_owned() });
+            }
+            variables.extend(read_npy(&file.unpack(name, budget)?, name, budget)?);
+            return Ok(());
+        }
+        let unpacked = if is_known(path) { Some(file.unpack(file.path, budget)?) } else { None };
+        let importer = unpacked.as_deref().map(|bytes| (importer_of(bytes, path), bytes));
+        match importer.filter(|(importer, _)| importer.name != ZIP.name) {
+            None => ignored.push(format!("{}: no file of a known kind", file.path)),
+            Some((importer, bytes)) => match (importer.read)(bytes, path, budget) {
+                Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => return Err(fault),
+                contents => files.push((file.path.to_owned(), contents)),
+            },
+        }
+        Ok(())
+    })?;
+    Ok(Contents::Archive { variables, files, ignored })
+}
+
+/// A file in a zip archive (APPNOTE 6.3), packed as it is.
+pub(super) struct ZipFile<'z, 'b> {
+    /// Its path in the archive.
+    pub(super) path: &'z str,
+    /// Where it begins \[bytes\].
+    pub(super) offset: u64,
+    archive: &'z ZipSliceArchive<&'b [u8]>,
+    entry: &'z ZipFileHeaderRecord<'b>,
+}
+
+/// Shows every file of an archive to `visit`, in the archive's order.
+pub(super) fn visit_files(
+    bytes: &[u8],
+    mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
+) -> Result<(), VariableFault> {
+    let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
+    let mut entries = archive.entries();
+    while let Some(entry) = entries
+        .next_entry()
+        .map_err(|error| VariableFault::damaged("", error.to_string(), archive.directory_offset()))?
+    {
+        if entry.is_dir() {
+            continue;
+        }
+        let path = entry.file_path();
+        let offset = entry.local_header_offset();
+        let path = std::str::from_utf8(path.as_bytes())
+            .map_err(|_| VariableFault::damaged("", "a name is not UTF-8", offset))?;
+        visit(&ZipFile { path, offset, archive: &archive, entry: &entry })?;
+    }
+    Ok(())
+}
+
+impl ZipFile<'_, '_> {
+    /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
+    pub(super) fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+        let unsupported =
+            |what: &str| VariableFault::unsupported(name, what, "pack it again by deflate, without a password");
+        if self.entry.flags().is_encrypted() {
+            return Err(unsupported("an encrypted entry"));
+        }
+        let found = self.archive.get_entry(self.entry.wayfinder());
+        let found = found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
+        let (packed, length) = (found.data(), self.entry.uncompressed_size_hint());
+        if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
+            return Err(VariableFault::damaged(name, "it claims more bytes than it can unpack to", self.offset));
+        }
+        budget.take(length, 1, name)?;
+        let unpacked = match self.entry.compression_method() {
+            CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length, budget)?,
+            CompressionMethod::DEFLATE => {
+                read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length, budget)?
+            }
+            method => return Err(unsupported(&format!("an entry packed by method {}", method.as_u16()))),
+        };
+        unpacked.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))
+    }
+}
+
+/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`, unless the reader shall stop.
+fn read_whole(
+    reader: impl Read,
+    length: u64,
+    budget: &ReadingBudget<'_>,
+) -> Result<std::io::Result<Vec<u8>>, VariableFault> {
+    let mut reader = reader.take(length.saturating_add(1));
+    let mut unpacked = Vec::with_capacity(usize::try_from(length).unwrap_or(0));
+    loop {
+        budget.work(0, "")?;
+        match reader.by_ref().take(CHUNK).read_to_end(&mut unpacked) {
+            Ok(0) if unpacked.len() as u64 == length => return Ok(Ok(unpacked)),
+            Ok(0) => return Ok(Err(std::io::Error::other("it is not as long as it claims"))),
+            Ok(_) => {}
+            Err(error) => return Ok(Err(error)),
+        }
+    }
+}
+
+/// Why there is no archive at all: a file begun as one has lost its end, where the directory stands.
+fn unreadable(bytes: &[u8]) -> VariableFault {
+    if bytes.starts_with(b"PK\x03\x04") {
+        return VariableFault::cut_off("", bytes.len());
+    }
+    VariableFault::other_bytes("a zip archive (.npz, .zip)", bytes)
+}
+
+#[cfg(test)]
+pub(crate) fn read_npz(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+    match read_archive(bytes, budget)? {
+        Contents::Archive { variables, .. } => Ok(variables),
+        _ => Ok(Vec::new()),
+    }
+}

@@ -36,16 +36,16 @@ const SECTIONS: [&str; 11] = [
 ];
 const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 
-/// The example, the nominal model of condition 10 rejected with a reason.
+/// A few conditions of the example, the nominal model of condition 10 rejected with a reason.
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
-    let mut study = Study::new(EXAMPLE.dataset.clone());
+    let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
     study.apply(&Edit::RejectBecause { model, reason: REASON.to_owned() }).unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 });
 
 static REPORT: LazyLock<String> = LazyLock::new(|| {
-    report(without_records(&ANALYSIS), &ReportSource::of(&EXAMPLE, None), &mut Engine::default(), &Unobserved).unwrap()
+    report(without_records(&ANALYSIS), &ReportSource::of(&FEW, None), &mut Engine::default(), &Unobserved).unwrap()
 });
 
 fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
@@ -70,14 +70,14 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
     let sections = texts(&document, "h2");
     assert_eq!(sections[1..], SECTIONS, "after the contents");
     let parts = texts(&document, "h3");
-    for condition in EXAMPLE.dataset.conditions() {
+    for condition in FEW.dataset.conditions() {
         let heading = format!("Condition {}: {}", condition.id(), condition.flight_state().name);
         assert!(parts.iter().any(|part| part.ends_with(&heading)), "{heading} in {parts:?}");
     }
     let figures = texts(&document, "figcaption");
     for words in ["responses on axis", "what the fit sees", "magnitude of every response", "poles of its models"] {
         let of = figures.iter().filter(|caption| caption.contains(words)).count();
-        assert_eq!(of, EXAMPLE.dataset.conditions().len(), "{words}");
+        assert_eq!(of, FEW.dataset.conditions().len(), "{words}");
     }
     for words in [
         "Gains of the inputs over conditions",
@@ -105,16 +105,16 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
     assert!(!REPORT.contains("Share of time"), "no record was given");
 
-    let channels = RecordChannels::of_dataset(&EXAMPLE.dataset).of_named_records();
+    let channels = RecordChannels::of_dataset(&FEW.dataset).of_named_records();
     let tables = example_records(3).unwrap().into_iter().take(1);
     let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
-    let (inputs, outputs) = EXAMPLE.dataset.names_of_channels();
+    let (inputs, outputs) = FEW.dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let records = [HistoryRecords::of(ConditionId(3), &records, Preparation::of(&inputs, &outputs))];
     let table = ToleranceTable::default();
     let histories = time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
-    let source = ReportSource::of(&EXAMPLE, None);
+    let source = ReportSource::of(&FEW, None);
     let subject = ReportSubject { histories: Some(&histories), ..without_records(&analysis) };
     let report = report(subject, &source, engine, &Unobserved).unwrap();
     let cells = texts(&parsed(&report), "td");
@@ -125,7 +125,7 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     }
     let rms = histories.j_rms(ConditionId(3), RequirementRole::Identified).unwrap();
     assert!(cells.contains(&format!("{rms:.2}")) && report.contains("J_rms over all records of a condition"));
-    assert!(report.contains("Conditions 1, 2, 4, 5, 6, 7, 8, 9, 10, 11: no flight record of it was given."));
+    assert!(report.contains("Conditions 7, 10: no flight record of it was given."));
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
     let place = cells.iter().position(|cell| cell == REASON).expect("the reason is there");
     assert_eq!(cells[place - 4..place - 1], ["10", "physics", "nominal"]);
     assert!(REPORT.contains("Condition 10 is left out: the nominal model is rejected."));
-    assert!(REPORT.contains(&EXAMPLE.sha256) && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION"))));
+    assert!(REPORT.contains(&FEW.sha256) && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION"))));
     assert!(REPORT.contains("A delay cannot give it."), "what could not be matched is said in words");
 }
 
@@ -171,13 +171,21 @@ fn every_link_and_every_name_within_a_report_leads_to_one_place() {
 }
 
 #[test]
-fn the_same_study_makes_the_same_bytes_and_not_too_many() {
+fn the_same_study_makes_the_same_bytes() {
     let again = || {
         let analysis = Engine::default().analyze(&Study::new(FEW.dataset.clone()), &Unobserved).unwrap();
         report(without_records(&analysis), &ReportSource::of(&FEW, None), &mut Engine::default(), &Unobserved).unwrap()
     };
     assert!(again() == again());
-    assert!(REPORT.len() < 15_000_000, "{} bytes", REPORT.len());
+}
+
+#[test]
+#[ignore = "eleven conditions; three are enough by default"]
+fn the_report_of_the_whole_example_is_not_too_long() {
+    let analysis = Engine::default().analyze(&Study::new(EXAMPLE.dataset.clone()), &Unobserved).unwrap();
+    let source = ReportSource::of(&EXAMPLE, None);
+    let text = report(without_records(&analysis), &source, &mut Engine::default(), &Unobserved).unwrap();
+    assert!(text.len() < 15_000_000, "{} bytes", text.len());
 }
 
 /// Stops after so many conditions.
@@ -189,7 +197,7 @@ impl Progress for Impatient {
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        assert_eq!(total, EXAMPLE.dataset.conditions().len());
+        assert_eq!(total, FEW.dataset.conditions().len());
         self.0.store(2_usize.saturating_sub(done), Ordering::Relaxed);
     }
 }
@@ -197,7 +205,7 @@ impl Progress for Impatient {
 #[test]
 fn a_report_that_is_not_wanted_any_more_is_given_up() {
     let impatient = Impatient(AtomicUsize::new(2));
-    let source = ReportSource::of(&EXAMPLE, None);
+    let source = ReportSource::of(&FEW, None);
     assert_eq!(report(without_records(&ANALYSIS), &source, &mut Engine::default(), &impatient), Err(Cancelled));
 }
 

@@ -1,6 +1,6 @@
 //! Whether the corrected model holds, and the one thing to do where it does not.
 
-use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy, Unmatched};
+use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy};
 use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_core::response::median;
 use gdcm_core::study::{
@@ -146,7 +146,9 @@ fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
             (false, _) => "not corrected".to_owned(),
             (true, false) => "fitted, none held".to_owned(),
             (true, true) if is_phase_met => format!("matched, {}", band_words(state)),
-            (true, true) => lag_words(&shown.delays.unmatched),
+            (true, true) => {
+                lag_words(&mut shown.delays.unmatched.iter().map(|missed| s_to_ms(missed.excess)).collect::<Vec<_>>())
+            }
         },
         is_met: is_any_held && is_phase_met,
     };
@@ -187,19 +189,22 @@ pub(super) fn joined(name: &str) -> String {
     name.replace(' ', "\u{a0}")
 }
 
-/// "lags by ≈ 66 ms" where all want about the same, as the remark on a common lead understands it; "lags by 20 to 110 ms" otherwise.
-fn lag_words(missed: &[Unmatched]) -> String {
-    let mut left_ms: Vec<f64> = missed.iter().map(|missed| s_to_ms(missed.excess)).collect();
+/// "lags by ≈ 66 ms" where all want about the same, as the remark on a common lead understands it; "lags 20–110 ms" otherwise, short
+/// enough for the narrowest window.
+fn lag_words(left_ms: &mut [f64]) -> String {
     let (least, most) = left_ms.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
-    let middle = median(&mut left_ms);
+    let middle = median(left_ms);
     let verb = if middle >= 0.0 { "lags" } else { "leads" };
-    let [low, high] = if middle >= 0.0 { [least, most] } else { [-most, -least] }.map(|at| telling(at, 0));
+    let [low, high] =
+        if middle >= 0.0 { [least, most] } else { [-most, -least] }.map(|at| telling(at, 0).replace('-', "\u{2212}"));
     if low == high {
         format!("{verb} by {low} ms")
     } else if most - least <= 0.5 * middle.abs() {
         format!("{verb} by ≈ {} ms", telling(middle.abs(), 0))
     } else {
-        format!("{verb} by {low} to {high} ms")
+        // "-5–60" would read as two signs.
+        let to = if least * most < 0.0 { " to " } else { "–" };
+        format!("{verb} {low}{to}{high} ms")
     }
 }
 
@@ -392,6 +397,15 @@ mod tests {
         assert_eq!(words(&[(2, 2), (4, 2)]).as_deref(), Some("2 share PED"));
         assert_eq!(words(&[(1, 0), (1, 3), (1, 2)]).as_deref(), Some("3 share Q"));
         assert_eq!((words(&[(2, 2), (5, 3)]), words(&[(2, 2)]), words(&[])), (None, None, None));
+    }
+
+    #[test]
+    fn what_phases_lag_by_is_one_number_or_two() {
+        assert_eq!(lag_words(&mut [60.0]), "lags by 60 ms");
+        assert_eq!(lag_words(&mut [60.0, 70.0, 64.0]), "lags by ≈ 64 ms");
+        assert_eq!(lag_words(&mut [40.0, 106.0, 62.0]), "lags 40–106 ms");
+        assert_eq!(lag_words(&mut [-5.0, 106.0, 62.0]), "lags −5 to 106 ms");
+        assert_eq!(lag_words(&mut [-90.0, -10.0, -30.0]), "leads 10–90 ms");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use gdcm_core::message_text::sanitized_path;
 use gdcm_core::study::{
     Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress, RequirementSettings, Table,
 };
-use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat};
+use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_files::{
     Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource, ReportSubject,
     add_tolerances, csv_text, figure_format, load_tolerances, read_levels, report, save_report, save_tables,
@@ -28,7 +28,8 @@ impl GdcmApp {
         let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
         let folder = self.at_home(folder);
         let written = write_results(&analysis, &self.loaded.sha256, &chosen, &folder, self.outputs());
-        let words = |()| format!("exported {} conditions to {}", chosen.len(), sanitized_path(&folder));
+        let absent = self.absent_bars(analysis.uncertainty.is_some());
+        let words = |()| format!("exported {} conditions to {}{absent}", chosen.len(), sanitized_path(&folder));
         self.written(written.map(words), FormKind::Export, Command::Export);
     }
 
@@ -49,13 +50,14 @@ impl GdcmApp {
         let source = ExportSource { name: self.state.study_name.clone(), sha256: self.loaded.sha256.clone() };
         let request = ExportRequest { format, ..ExportRequest::default() };
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
+        let absent = self.absent_bars(analysis.uncertainty.is_some());
         let words = |remarks: Vec<String>| {
             let remark = match remarks.as_slice() {
                 [] => String::new(),
                 [remark] => format!(" ({remark})"),
                 several => format!(" ({} remarks, in the file)", several.len()),
             };
-            format!("exported {}{remark}", sanitized_path(&path))
+            format!("exported {}{remark}{absent}", sanitized_path(&path))
         };
         self.written(written.map(words), FormKind::ExportAs, Command::ExportAs(format, path.clone()));
     }
@@ -66,6 +68,21 @@ impl GdcmApp {
         // With how sure its figures are, as far as that is computed.
         let of_this = |bars: &Analysis| bars.study == analysis.study;
         Some(self.state.analysis_with_bars().filter(of_this).map_or(analysis.clone(), Arc::new))
+    }
+
+    /// What is said of a file that lacks the error bars it could have; nothing of one that has them.
+    fn absent_bars(&self, are_there: bool) -> &'static str {
+        match self.state.results.background.stopped {
+            _ if are_there => "",
+            true => "; without error bars, for computing them was stopped",
+            false => "; without error bars, which are still being computed",
+        }
+    }
+
+    /// The same of what a view shows: some have error bars as soon as they are computed.
+    fn absent_bars_of(&self, view: View) -> &'static str {
+        let shows_bars = view.kind().figure.is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
+        self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 
     /// The analysis, where it is complete and of what is decided now; otherwise a sentence that says why not. `what` could be done
@@ -87,7 +104,7 @@ impl GdcmApp {
         let tables = tables_in_place(&self.state, view);
         if let Some(tables) = tables.or_else(|| Some(self.figure_of(view)?.tables())) {
             self.ctx.copy_text(csv_text(&tables));
-            self.done(format!("copied the numbers of {}", view.name()));
+            self.done(format!("copied the numbers of {}{}", view.name(), self.absent_bars_of(view)));
         }
     }
 
@@ -121,7 +138,9 @@ impl GdcmApp {
                 write_figure(&figure, width, &path, self.outputs())
             }
         };
-        self.saved_to(written, &path, FormKind::SaveFigure, Command::SaveFigure(view, width, path.clone()));
+        let words = |()| format!("saved {}{}", sanitized_path(&path), self.absent_bars_of(view));
+        let again = Command::SaveFigure(view, width, path.clone());
+        self.written(written.map(words), FormKind::SaveFigure, again);
     }
 
     /// The figure of a view; where there is none yet, that is said.

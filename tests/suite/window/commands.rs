@@ -194,7 +194,7 @@ fn a_table_is_saved_as_csv_and_an_existing_file_is_asked_about() {
 #[test]
 fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     let mut window = window();
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     let uncertainty = state(&window).uncertainty().unwrap();
     let (condition, pair) = (state(&window).condition().id(), pair(&window, "Q", "LON"));
     let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();

@@ -11,7 +11,7 @@ use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
 use super::views::show;
 use super::*;
-use gdcm::view::View;
+use gdcm::view::{Command, View};
 
 /// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
 #[derive(Clone, Default)]
@@ -210,13 +210,21 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
     let told = window.query_all_by_label_contains(&format!(" of {} steps …", 2 * models)).count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
+    let copied = |window: &mut Window| {
+        window.state_mut().dispatch(Command::CopyFigure(View::NetGain));
+        state(window).notice.clone().unwrap().text
+    };
+    let done = "copied the numbers of Net gain";
+    assert_eq!(copied(&mut window), format!("{done}; without error bars, which are still being computed"));
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
+    assert_eq!(copied(&mut window), format!("{done}; without error bars, for computing them was stopped"));
     window.get_by_label("Error bars: stopped; Compute, below, goes on with them");
     click(&mut window, "Compute");
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     assert!(window.query_by_label_contains("Error bars: stopped").is_none());
+    assert_eq!(copied(&mut window), done);
 }
 
 #[test]

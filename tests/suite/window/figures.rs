@@ -34,7 +34,7 @@ fn assert_saved(window: &mut Window, view: View, format: FigureFormat, folder: &
 fn every_view_is_saved_from_its_header() {
     let mut window = few_window();
     let folder = tempfile::tempdir().unwrap();
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     for view in views_with_figure() {
         show(&mut window, view);
         wait_until(&mut window, "what it shows", |window| !state(window).results.background.is_busy());
@@ -59,6 +59,7 @@ fn coherence_of_measured_responses_stands_below_their_bode_plot() {
 #[test]
 fn a_view_is_saved_in_every_format() {
     let mut window = few_window();
+    wait_for_bars(&mut window);
     let folder = tempfile::tempdir().unwrap();
     for format in FigureFormat::ALL {
         assert_saved(&mut window, View::NetGain, format, folder.path());
@@ -69,6 +70,7 @@ fn a_view_is_saved_in_every_format() {
 fn a_figure_of_the_window_is_that_of_the_command() {
     let mut window = window();
     choose_condition_10(&mut window);
+    wait_for_bars(&mut window);
     let folder = tempfile::tempdir().unwrap();
     let (ours, theirs) = (folder.path().join("window.svg"), folder.path().join("command.svg"));
     save_figure(&mut window, View::Bode, "SVG", &ours);
@@ -100,6 +102,7 @@ fn a_file_that_is_there_is_asked_about_and_a_name_without_a_format_is_refused() 
 #[test]
 fn the_numbers_of_a_view_are_copied_as_csv() {
     let mut window = window();
+    wait_for_bars(&mut window);
     click(&mut window, "Save or copy Net gain");
     window.get_by_label("Copy the numbers").click();
     let copied = |window: &Window| {

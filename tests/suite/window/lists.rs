@@ -135,7 +135,7 @@ fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not
 #[ignore = "takes a minute: the labels of 264 responses"]
 fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condition() {
     let mut window = window();
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     let conditions: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
     let pairs: Vec<Pair> = state(&window).study.settings.constrained.pairs().collect();
     assert_eq!((conditions.len(), pairs.len()), (11, 24));

@@ -55,7 +55,7 @@ use gdcm_files::{Opened, OpenedStudy, load_any, open_study};
 pub(crate) type Window = Harness<'static, GdcmApp>;
 
 /// Far above what the slowest machine needs: only a hang gets there.
-const LIMIT: Duration = Duration::from_secs(120);
+const LIMIT: Duration = Duration::from_secs(900);
 
 const CONDITION_10: &str = "Condition 10: 60 kt, low altitude, high weight";
 
@@ -116,6 +116,11 @@ pub(crate) fn settle(window: &mut Window) {
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
     window.run_steps(2);
+}
+
+/// Draws frames until the values have their error bars, which come after what [`settle`] waits for.
+pub(crate) fn wait_for_bars(window: &mut Window) {
+    wait_until(window, "the error bars", |window| state(window).uncertainty().is_some());
 }
 
 pub(crate) fn click(window: &mut Window, label: &str) {

@@ -176,7 +176,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
     give(&mut window, Action::OpenDock(false));
     give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
     click(&mut window, CONDITION_10);
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     let mut misses = Vec::new();
     for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
         give(&mut window, Action::SetTheme(preference));
@@ -207,7 +207,7 @@ fn every_view_looks_as_it_did_in_both_themes() {
 fn the_pictures_of_the_pages_are_those_of_the_window() {
     let textures = Textures::default();
     let mut window = pictured_window(&textures, SHOWN);
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     click(&mut window, CONDITION_10);
     click(&mut window, "Response LON → Q");
     let mut misses = Vec::new();
@@ -221,14 +221,14 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     };
     window.key_press_modifiers(Modifiers::COMMAND, Key::R);
     settle(&mut window);
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     look(&mut window, "outliers");
     show(&mut window, View::Evidence);
     look(&mut window, "evidence");
     show(&mut window, View::Bode);
     click(&mut window, "Use leads");
     settle(&mut window);
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     look(&mut window, "leads");
     show(&mut window, View::Records);
     wait_until(&mut window, "the records", |window| {

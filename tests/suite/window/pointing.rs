@@ -139,7 +139,7 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
 #[test]
 fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
     let mut window = window();
-    wait_until(&mut window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_for_bars(&mut window);
     let bars = |window: &Window| {
         let cell = window.get_by_label("Response LON → Q").rect();
         let texts = window.output().shapes.iter().filter_map(|clipped| match &clipped.shape {

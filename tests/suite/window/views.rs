@@ -176,11 +176,6 @@ fn a_degree_is_chosen_on_evidence() {
     assert!(!state(&window).unsaved);
 }
 
-/// Draws frames until how sure the figures are is there.
-fn wait_for_bars(window: &mut Window) {
-    wait_until(window, "the error bars", |window| state(window).uncertainty().is_some());
-}
-
 #[test]
 fn the_evidence_answers_which_differences_are_in_earnest() {
     let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());

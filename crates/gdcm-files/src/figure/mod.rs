@@ -135,6 +135,11 @@ impl FigureKind {
         matches!(self, Self::Evidence | Self::Requirements)
     }
 
+    /// Whether it has error bars where they are computed, and can do without them.
+    pub fn takes_bars(self) -> bool {
+        matches!(self, Self::NetGain | Self::Channels)
+    }
+
     /// Whether it is a figure of one condition.
     pub fn is_of_condition(self) -> bool {
         matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads)

@@ -32,9 +32,19 @@ impl Trap {
         Setup { engine: Arc::new(move || WARM.fork(Box::new(trap.clone()))), ..Setup::default() }
     }
 
-    fn close(&self, closed: bool) {
-        *self.closed.0.lock().unwrap() = closed;
-        self.closed.1.notify_all();
+    fn close(&self) -> Closed<'_> {
+        *self.closed.0.lock().unwrap() = true;
+        Closed(self)
+    }
+}
+
+/// Opens the trap when it is dropped, by a test that fails too: what waits holds threads that other tests compute on.
+struct Closed<'a>(&'a Trap);
+
+impl Drop for Closed<'_> {
+    fn drop(&mut self) {
+        *self.0.closed.0.lock().unwrap() = false;
+        self.0.closed.1.notify_all();
     }
 }
 
@@ -128,14 +138,14 @@ fn results_of_two_generations_of_settings_are_told_apart() {
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
     assert!(window.query_by_label("of older settings").is_none());
-    trap.close(true);
+    let closed = trap.close();
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the condition shown is ahead", |window| state(window).results.first_is_ahead());
     window.get_by_label("of older settings");
     window.get_by_label_contains("11 · of older settings");
     let scheduled = drawn(&window, CurveRole::Scheduled);
     assert!(scheduled.label.ends_with("scheduled of older settings"), "{}", scheduled.label);
-    trap.close(false);
+    drop(closed);
     settle(&mut window);
     assert!(window.query_by_label("of older settings").is_none());
     assert!(drawn(&window, CurveRole::Scheduled).label.ends_with("scheduled"));
@@ -145,14 +155,14 @@ fn results_of_two_generations_of_settings_are_told_apart() {
 fn quitting_does_not_wait_for_what_is_being_computed() {
     let trap = Trap::default();
     let mut window = window_with(example(), trap.setup());
-    trap.close(true);
+    let closed = trap.close();
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "it computes", |window| state(window).results.first_is_ahead());
     let start = Instant::now();
     drop(window);
     // What is being computed would never end.
     assert!(start.elapsed() < Duration::from_secs(30));
-    trap.close(false);
+    drop(closed);
 }
 
 #[test]
@@ -179,7 +189,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     let before = state(&window).results.received;
     unfold_settings(&mut window, true);
     // However fast the machine is, nothing is computed before the click.
-    trap.close(true);
+    let closed = trap.close();
     window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(2000.0);
     window.run_steps(3);
     window.get_by_label("Stop").click();
@@ -187,7 +197,7 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     assert!(state(&window).results.stopped && state(&window).results.received == before);
     window.get_by_label("stopped: the results are older than the settings");
     assert!(state(&window).analysis().is_some(), "the results there were are still shown");
-    trap.close(false);
+    drop(closed);
     click(&mut window, "Compute");
     assert!(!state(&window).results.is_behind());
     assert_eq!(state(&window).analysis().map(|analysis| analysis.omega.len()), Some(2000));
@@ -195,10 +205,11 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
 
 #[test]
 fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
-    let mut window = window_with(example(), Setup::default());
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
     show(&mut window, View::Evidence);
     unfold_settings(&mut window, true);
-    // Five times the points: far more work than the frames until the click give it time for.
+    // Five times the points: far more work than the frames until the first part is seen give it time for.
     window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(1000.0);
     settle(&mut window);
     let counts = |window: &Window| state(window).results.background.bars;
@@ -207,6 +218,8 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     wait_until(&mut window, "a part of the error bars", |window| {
         counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
+    // However fast the machine is, no more than what has begun is computed before the click.
+    let closed = trap.close();
     wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
     let told = window.query_all_by_label_contains(&format!(" of {} steps …", 2 * models)).count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
@@ -220,6 +233,7 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     window.run_steps(3);
     assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
     assert_eq!(copied(&mut window), format!("{done}; without error bars, for computing them was stopped"));
+    drop(closed);
     window.get_by_label("Error bars: stopped; Compute, below, goes on with them");
     click(&mut window, "Compute");
     wait_for_bars(&mut window);

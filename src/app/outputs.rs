@@ -81,7 +81,7 @@ impl GdcmApp {
 
     /// The same of what a view shows: some have error bars as soon as they are computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
-        let shows_bars = view.kind().figure.is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
+        let shows_bars = view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 

@@ -7,14 +7,14 @@ use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRe
 
 use super::plot::{BodeView, PANES};
 use super::views::{
-    assessed_pairs, assessment_choice, bode_options, condition_source, net_gain_pairs, requirement_tables,
-    shown_couplings, shown_over_time, shown_requirements,
+    ViewFigure, assessment_choice, bode_options, condition_source, requirement_tables, shown_couplings,
+    shown_over_time, shown_requirements,
 };
 use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
-    let bars = !state.display.hide_bars || view.kind().figure.is_some_and(FigureKind::needs_bars);
+    let bars = !state.display.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
     let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
     // What requirements are asked with has no part in the live answer, which may be older.
     let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
@@ -25,7 +25,7 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
 
 /// A name for the file of a view's figure: `bode-10-LON-Q`.
 pub fn figure_name(state: &State, view: View) -> String {
-    let kind = view.kind().figure;
+    let kind = view.figure();
     let mut parts: Vec<String> = kind.iter().map(|kind| kind.name().to_owned()).collect();
     if kind.is_some_and(FigureKind::is_of_condition) {
         parts.push(state.condition().id().to_string());
@@ -40,20 +40,13 @@ pub fn figure_name(state: &State, view: View) -> String {
 
 /// The views that have a figure.
 pub fn views_with_figure() -> impl Iterator<Item = View> {
-    View::ALL.into_iter().filter(|view| view.kind().figure.is_some())
+    View::ALL.into_iter().filter(|view| view.figure().is_some())
 }
 
 /// What a view shows: the same that the command `gdcm figure` is asked for.
 pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
-    let kind = view.kind().figure?;
-    let (display, dataset) = (&state.display, state.dataset());
-    let pairs = match view {
-        View::Bode | View::Error | View::Across | View::Leads => vec![display.pair],
-        View::NetGain => net_gain_pairs(state),
-        View::Assessment => assessed_pairs(state),
-        View::Evidence => dataset.measuring_pairs().marked().collect(),
-        _ => Vec::new(),
-    };
+    let ViewFigure { kind, pairs } = view.kind().figure?;
+    let display = &state.display;
     let (measure, across) = display.channel_values;
     let plot = match view {
         View::Bode => Some(&display.bode),
@@ -65,7 +58,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
     let bode = BodeOptions { omega: plot.and_then(BodeView::chosen_omega), values, ..bode_options(state) };
     let assessed = Some(assessment_choice(state));
-    let usual = FigureRequest::new(kind, pairs, all_channels(dataset));
+    let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
     let over_time = shown_over_time(state, kind);
     let couplings = shown_couplings(state).filter(|_| view == View::Couplings);
@@ -89,7 +82,7 @@ pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
 
 /// The button that copies or saves what a view shows.
 pub(super) fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
-    if view.kind().figure.is_none() {
+    if view.figure().is_none() {
         return;
     }
     let has_figure = tables_in_place(state, view).is_none();

@@ -529,6 +529,9 @@ fn frame<'a>(
         false => across,
     };
     let label = if scene.figure.shared.y { "" } else { panel.y.label.as_str() };
+    // No label is longer than its axis: beside a low panel its unit stands alone.
+    let is_too_long = width(label) > size.y - height;
+    let label = label.rfind('[').filter(|_| is_too_long).map_or(label, |unit| &label[unit..]);
     let plot = quiet_plot(id, palette)
         .sense(if scene.zooms { Sense::click_and_drag() } else { Sense::click() })
         .width(size.x)

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use egui::Ui;
+use gdcm_core::dataset::Pair;
 use gdcm_core::study::{
     AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
     SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
@@ -104,6 +105,11 @@ impl View {
         self.kind().name
     }
 
+    /// Which figure it is on paper, where it is one.
+    pub fn figure(self) -> Option<FigureKind> {
+        Some(self.kind().figure?.kind)
+    }
+
     /// All that the window knows of it: tabs, menus, the palette, background jobs and figures read this list.
     pub fn kind(self) -> ViewKind {
         match self {
@@ -112,7 +118,7 @@ impl View {
                 purpose: "Magnitude and phase of the response in focus",
                 draw: bode_view_ui,
                 title: ViewTitle::Response,
-                figure: Some(FigureKind::Bode),
+                figure: Some(ViewFigure::of_focus(FigureKind::Bode)),
                 ..ViewKind::PLAIN
             },
             Self::Error => ViewKind {
@@ -122,7 +128,7 @@ impl View {
                 title: ViewTitle::Response,
                 tools: |ui, state, _, commands| error_header_ui(ui, state, commands),
                 tools_width: 160.0,
-                figure: Some(FigureKind::Error),
+                figure: Some(ViewFigure::of_focus(FigureKind::Error)),
                 ..ViewKind::PLAIN
             },
             Self::Overview => ViewKind {
@@ -130,7 +136,7 @@ impl View {
                 purpose: "Every response of the condition, small",
                 draw: overview_view_ui,
                 title: ViewTitle::Condition,
-                figure: Some(FigureKind::Overview),
+                figure: Some(ViewFigure::of_all(FigureKind::Overview)),
                 ..ViewKind::PLAIN
             },
             Self::Across => ViewKind {
@@ -141,7 +147,7 @@ impl View {
                 tools: across_header_ui,
                 tools_width: 330.0,
                 needs: |state| vec![Need::Across(across_job(state))],
-                figure: Some(FigureKind::Airspeeds),
+                figure: Some(ViewFigure::of_focus(FigureKind::Airspeeds)),
                 ..ViewKind::PLAIN
             },
             Self::Poles => ViewKind {
@@ -156,7 +162,7 @@ impl View {
                     let condition = state.dataset().condition(state.condition().id());
                     condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of).into() })).into_iter().collect()
                 },
-                figure: Some(FigureKind::Poles),
+                figure: Some(ViewFigure::of_all(FigureKind::Poles)),
                 ..ViewKind::PLAIN
             },
             Self::Couplings => ViewKind {
@@ -170,7 +176,7 @@ impl View {
                 tools_width: 220.0,
                 is_of_all_conditions: true,
                 needs: |state| vec![Need::Couplings(couplings_job(state))],
-                figure: Some(FigureKind::Couplings),
+                figure: Some(ViewFigure::of_all(FigureKind::Couplings)),
                 ..ViewKind::PLAIN
             },
             Self::Records => ViewKind {
@@ -193,7 +199,7 @@ impl View {
                 tools: |ui, state, _, commands| channels_header_ui(ui, state, commands),
                 tools_width: 410.0,
                 is_of_all_conditions: true,
-                figure: Some(FigureKind::Channels),
+                figure: Some(ViewFigure::of_all(FigureKind::Channels)),
                 ..ViewKind::PLAIN
             },
             Self::Assessment => ViewKind {
@@ -209,7 +215,7 @@ impl View {
                     let job = current(state).map(|analysis| AssessmentJob { analysis: analysis.into(), choice });
                     job.map(Need::Assessment).into_iter().collect()
                 },
-                figure: Some(FigureKind::Assessment),
+                figure: Some(ViewFigure { kind: FigureKind::Assessment, pairs: assessed_pairs }),
                 ..ViewKind::PLAIN
             },
             // The button of its figure stands in its first line: it has no tools.
@@ -220,7 +226,10 @@ impl View {
                 group: ViewGroup::Schedule,
                 takes_dock: true,
                 is_of_all_conditions: true,
-                figure: Some(FigureKind::Evidence),
+                figure: Some(ViewFigure {
+                    kind: FigureKind::Evidence,
+                    pairs: |state| state.dataset().measuring_pairs().marked().collect(),
+                }),
                 ..ViewKind::PLAIN
             },
             Self::Compare => ViewKind {
@@ -242,7 +251,7 @@ impl View {
                 tools_width: 270.0,
                 is_of_all_conditions: true,
                 needs: requirements_needs,
-                figure: Some(FigureKind::Requirements),
+                figure: Some(ViewFigure::of_all(FigureKind::Requirements)),
                 ..ViewKind::PLAIN
             },
             Self::Leads => ViewKind {
@@ -252,7 +261,7 @@ impl View {
                 group: ViewGroup::Schedule,
                 is_docked: true,
                 title: ViewTitle::Response,
-                figure: Some(FigureKind::Leads),
+                figure: Some(ViewFigure::of_focus(FigureKind::Leads)),
                 ..ViewKind::PLAIN
             },
             Self::NetGain => ViewKind {
@@ -266,7 +275,7 @@ impl View {
                 tools: net_gain_header_ui,
                 tools_width: NET_GAIN_CONTROLS,
                 is_of_all_conditions: true,
-                figure: Some(FigureKind::NetGain),
+                figure: Some(ViewFigure { kind: FigureKind::NetGain, pairs: net_gain_pairs }),
                 ..ViewKind::PLAIN
             },
         }
@@ -301,7 +310,7 @@ pub struct ViewKind {
     /// What its heading in the dock says, where that is more than its tab does.
     pub long_name: Option<&'static str>,
     /// What it is on paper. Variants are tables, which are saved as such; of records what is identified is saved.
-    pub figure: Option<FigureKind>,
+    pub figure: Option<ViewFigure>,
 }
 
 impl ViewKind {
@@ -321,6 +330,27 @@ impl ViewKind {
         long_name: None,
         figure: None,
     };
+}
+
+/// A view on paper.
+#[derive(Clone, Copy)]
+pub struct ViewFigure {
+    /// Which figure it is.
+    pub kind: FigureKind,
+    /// The responses that it is of; none of a figure that is of all or of no response.
+    pub pairs: fn(&State) -> Vec<Pair>,
+}
+
+impl ViewFigure {
+    /// Of the response in focus.
+    fn of_focus(kind: FigureKind) -> Self {
+        Self { kind, pairs: |state| vec![state.display.pair] }
+    }
+
+    /// Of all responses, or of none.
+    fn of_all(kind: FigureKind) -> Self {
+        Self { kind, pairs: |_| Vec::new() }
+    }
 }
 
 /// What the header of a view says of what is shown.

@@ -157,3 +157,17 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
     harness.run();
     assert_eq!(ranges(&harness), whole);
 }
+
+#[test]
+fn a_label_longer_than_its_axis_leaves_its_unit_alone() {
+    let labelled = |label: &str| Plot::new("").panel(Panel { y: Axis::linear(label), ..panel(1.3) });
+    let figure = Figure::default()
+        .plots(["Rate [deg/s]", "What the models answer less what was flown, of all records [deg/s]"].map(labelled));
+    let harness = harness(Model { figure: figure.with_ranges(), ..Model::default() });
+    let shapes = harness.output().shapes.iter();
+    let upright = shapes.filter_map(|drawn| match &drawn.shape {
+        egui::Shape::Text(text) if text.angle != 0.0 => Some(text.galley.text().to_owned()),
+        _ => None,
+    });
+    assert_eq!(upright.collect::<Vec<_>>(), ["Rate [deg/s]", "[deg/s]"]);
+}

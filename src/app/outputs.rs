@@ -72,10 +72,13 @@ impl GdcmApp {
 
     /// What is said of a file that lacks the error bars it could have; nothing of one that has them.
     fn absent_bars(&self, are_there: bool) -> &'static str {
-        match self.state.results.background.stopped {
-            _ if are_there => "",
-            true => "; without error bars, for computing them was stopped",
-            false => "; without error bars, which are still being computed",
+        let background = &self.state.results.background;
+        // Something else may have been stopped while they go on.
+        let were_stopped = background.stopped && background.bars.is_none();
+        match (are_there, were_stopped) {
+            (true, _) => "",
+            (false, true) => "; without error bars, for computing them was stopped",
+            (false, false) => "; without error bars, which are still being computed",
         }
     }
 

@@ -416,7 +416,7 @@ pub enum IdentificationError {
          widen the band, or leave out channels"
     )]
     NoModel {
-        /// SpectralLines of all records.
+        /// Spectral lines of all records.
         lines: usize,
         /// Their length \[s\].
         seconds: f64,

@@ -11,7 +11,7 @@ const FEWER_TERMS: usize = 2;
 const HALF_WIDTH: (f64, f64) = (0.45, 0.2);
 /// A window with too few lines is widened by the first factor, then by the second until they are enough (M14.12).
 const WIDER: (f64, f64) = (1.2, 1.05);
-/// SpectralLines beyond the unknowns and the outputs that a window has at least, with three terms and with two (M14.12).
+/// Spectral lines beyond the unknowns and the outputs that a window has at least, with three terms and with two (M14.12).
 const SPARE_LINES: (usize, usize) = (6, 4);
 /// Height of the ridge over the length of a column; it bounds the estimate where inputs are copies of each other.
 const RIDGE: f64 = 1e-9;
@@ -33,9 +33,9 @@ pub enum LocalPolynomialError {
         "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
     )]
     TooFewLines {
-        /// SpectralLines over all records.
+        /// Spectral lines over all records.
         lines: usize,
-        /// SpectralLines it takes.
+        /// Spectral lines it takes.
         needed: usize,
     },
 }
@@ -103,7 +103,7 @@ pub(super) struct Window {
     terms: usize,
     /// Of each spectrum the first line inside and the first one beyond; as one where the spectrum has too few.
     lines: Vec<(usize, usize)>,
-    /// SpectralLines inside, over all spectra that count.
+    /// Spectral lines inside, over all spectra that count.
     count: usize,
     /// Columns that the records' transients take.
     transients: usize,
@@ -349,7 +349,7 @@ pub struct EstimatePoint {
     pub condition: f64,
     /// `h`, half width of the window of lines \[rad/s\].
     pub half_width: f64,
-    /// SpectralLines used, less the unknowns: the degrees of freedom of `noise`.
+    /// Spectral lines used, less the unknowns: the degrees of freedom of `noise`.
     pub freedom: usize,
 }
 

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 /// Points of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// SpectralLines for the measured response reach this factor above those used.
+/// Spectral lines for the measured response reach this factor above those used.
 const BEYOND: f64 = 1.3;
 /// Lines of a segment are used from its second one up: the first holds its drift (M14.12).
 const FIRST_LINE: f64 = 1.5;
@@ -26,7 +26,7 @@ pub(super) struct PreparedData<'a> {
     pub(super) lines: LineRange,
     /// Held-out segments in the units of the records.
     pub(super) held_out_segments: Vec<Segment>,
-    /// SpectralLines to fit.
+    /// Spectral lines to fit.
     pub(super) spectra: Vec<Spectrum>,
     /// The response without a model.
     pub(super) measured: ResponseEstimate,

@@ -61,7 +61,7 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
     Spectrum { record: segment.record, duration_s, omega, inputs, outputs }
 }
 
-/// SpectralLines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
+/// Spectral lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
 fn transform(samples: &DMatrix<f64>, lines: usize, factor: f64, plan: &FourierTransform) -> DMatrix<Complex<f64>> {
     let mut transformed = DMatrix::zeros(samples.ncols(), lines);
     if lines == 0 {

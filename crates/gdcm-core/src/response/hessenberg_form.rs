@@ -148,7 +148,7 @@ const LANES: usize = 8;
 /// `Q' B` zero below its first entry.
 ///
 /// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan, "Matrix
-/// Computations", 4th ed. 2013, 7.4.2), applied from both inputs in one pass over the matrix T, as `T - y v' - v w'` with
+/// Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the matrix T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
@@ -175,7 +175,7 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by a reflection of the states from `first` on, applied from both inputs; the column
+/// Clears a column below row `first` by a reflection of the states from `first` on, applied from both sides; the column
 /// itself is not among those of these states.
 #[inline(always)]
 fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
@@ -199,7 +199,7 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     }
 }
 
-/// Applies the reflection `I - beta v v'` of these states from both inputs.
+/// Applies the reflection `I - beta v v'` of these states from both sides.
 #[inline(always)]
 fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
     let width = rows.nrows();

@@ -600,3 +600,61 @@ fn a_response_that_a_physics_model_lacks_is_lacking_once_coupled_and_only_what_d
     let fed_back = constant(&mixing, &dmatrix![0.0, 0.0, 0.1; 0.0, 0.0, 0.0]).response(&lacking, 60.0);
     assert!(fed_back.curves().iter().all(|(_, curve)| !curve[3].is_finite() && curve[4].is_finite()));
 }
+
+/// A synthetic problem of as many inputs as outputs, each response a lag of its own, flown with small couplings.
+fn many_channels(channels: usize, conditions: usize, points: usize) -> CouplingProblem {
+    let mut state = 88_172_645_463_325_252_u64;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let omega = FrequencyGrid::logarithmic(Band::new(0.3, 12.0).unwrap(), points).omega().to_vec();
+    let couplings = {
+        let mut small = |row: usize, column: usize| {
+            let unit = if row == column { 1.0 } else { 0.0 };
+            unit + 0.1 * random()
+        };
+        let mixing = DMatrix::from_fn(channels, channels, &mut small);
+        constant(&mixing, &DMatrix::from_fn(channels, channels, |_, _| 0.02 * small(0, 1)))
+    };
+    let conditions = (0..conditions).map(|place| {
+        let physics = FrequencyResponse::new(PairTable::from_fn(channels, channels, |pair| {
+            let gain = if pair.output == pair.input { 3.0 } else { 0.6 * random() };
+            let lag = 1.5 + random();
+            omega.iter().map(|&omega| Complex::from(gain) / Complex::new(lag, omega)).collect()
+        }));
+        let airspeed_kt = 20.0 * place as f64;
+        CouplingCondition {
+            id: ConditionId(place as i64 + 1),
+            airspeed_kt,
+            flight: couplings.response(&physics, airspeed_kt),
+            physics: Arc::new(physics),
+            usable: PairTable::filled(channels, channels, true),
+            deviation: None,
+            coherence: None,
+        }
+    });
+    CouplingProblem {
+        kind: CouplingKind::MixingAndFeedback,
+        conditions: conditions.collect(),
+        on_axis: PairTable::from_fn(channels, channels, |pair| pair.output == pair.input),
+        omega: omega.clone().into(),
+        options: CouplingOptions::default(),
+    }
+}
+
+#[test]
+#[ignore = "a figure of the release build: docs/performance.md"]
+fn twenty_inputs_and_outputs_are_fitted_within_ten_seconds() {
+    let problem = many_channels(20, 4, 200);
+    let started = std::time::Instant::now();
+    let found = fit(&problem);
+    let took = started.elapsed();
+    println!("20 x 20, 4 conditions, one core: {took:.2?}; residual {:.1e}", found.residual);
+    if let Ok(path) = std::env::var("GDCM_FIT_FILE") {
+        std::fs::write(path, serde_json::to_string(&found.coefficients).unwrap()).unwrap();
+    }
+    assert!(found.residual < 1e-12 && took.as_secs_f64() < 10.0, "{took:?}");
+}

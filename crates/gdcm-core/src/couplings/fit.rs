@@ -15,7 +15,7 @@ use super::{
 };
 use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
-use crate::progress::{Cancelled, Progress, Shares, Untold};
+use crate::progress::{Cancelled, Portion, Progress, Shares};
 use crate::uncertainty::student_quantile;
 
 /// The couplings of a problem, and how they were found.
@@ -159,8 +159,9 @@ pub fn left_out_fits(
     let shares = Shares::new(progress);
     let fits = each(executor, 0..count, |place| {
         let condition = problem.conditions[place].id;
-        let fit = fit_couplings(&problem.without(place), &Sequential, &Untold(progress))?;
-        shares.advance(1.0 / count as f64, "mixing and feedback without each condition")?;
+        let portion = Portion::new(&shares, 1.0 / count as f64, "mixing and feedback without each condition");
+        let fit = fit_couplings(&problem.without(place), &Sequential, &portion)?;
+        portion.finish()?;
         Ok(LeftOutFit { condition, fit })
     });
     fits.into_iter().collect()

@@ -132,10 +132,13 @@ impl BackgroundJobs {
             |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
             |app, job, curves| app.state.results.across = Some((job, curves)),
         );
-        let couplings = JobKind::new(
-            |app| needed(app, |need| if let Need::Couplings(job) = need { Some(job) } else { None }),
-            |app, job, assessed| app.state.results.couplings = assessed.map(|assessed| (job, assessed)),
-        );
+        let couplings = JobKind {
+            tell: |queue, background| background.couplings = queue.progress(),
+            ..JobKind::new(
+                |app| needed(app, |need| if let Need::Couplings(job) = need { Some(job) } else { None }),
+                |app, job, assessed| app.state.results.couplings = assessed.map(|assessed| (job, assessed)),
+            )
+        };
         let requirements = JobKind::new(
             |app| needed(app, |need| if let Need::Requirements(job) = need { Some(job) } else { None }),
             |app, job, found| app.state.results.requirements = Some((job, found)),

@@ -7,7 +7,9 @@ use gdcm_core::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 use gdcm_core::units::number;
-use gdcm_files::{FileError, LoadedDataset, Opened, OpenedStudy, dataset_faults};
+use gdcm_files::{
+    ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults, holds_models,
+};
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;
@@ -17,8 +19,12 @@ use super::terminal::{Failure, by_words, error, indented, line, of_conditions, s
 
 /// Says what a dataset or a study holds.
 pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[ChannelSign]) -> Result<(), Failure> {
+    if file.is_file() && !holds_models(file) {
+        // A wrong structure is found before a large file is read to its end.
+        check_beginning(file)?;
+    }
     let opened = match open(file, arguments) {
-        Err(Failure::File(error @ FileError::Content { .. })) => return Err(all_faults(file, error)),
+        Err(Failure::File(error)) if has_several_faults(&error) => return Err(all_faults(file, error)),
         opened => opened?,
     };
     let (decided, mut study, loaded) = match opened {
@@ -27,6 +33,11 @@ pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[ChannelS
     };
     turn(&mut study, signs)?;
     say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
+}
+
+/// Whether an error is one of the content of a dataset, beside which there may be others; one of the text is the only one.
+fn has_several_faults(error: &FileError) -> bool {
+    matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
 /// Tells every fault of a dataset, and gives what the command ends with: the only one itself, else their number.

@@ -36,6 +36,10 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let inputs = arguments.records.iter().chain(&arguments.into).cloned().collect();
     let mut outputs = OutputSet::new(existing(arguments.force), inputs);
     let mut destination = Destination::asked(arguments)?;
+    // Before the records are read, as far as the names of the files are known.
+    let known = (!arguments.every_condition).then(|| arguments.out.join(IDENTIFIED));
+    let known = known.iter().chain(destination.iter().map(|of| &of.path));
+    outputs.check(&known.collect::<Vec<_>>())?;
     let dataset = destination.as_ref().map(|of| of.dataset.as_ref());
     let band = arguments.band(dataset)?;
     let mut channels = arguments.channels(dataset, band)?;
@@ -49,6 +53,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     for (task, file) in tasks.iter().zip(&files) {
         let found = match task.run() {
             Ok(found) => found,
+            Err(IdentificationError::Stopped(stopped)) => return Err(stopped.into()),
             Err(why) if tasks.len() == 1 => return Err(Failure::NoModels { reason: why.to_string() }),
             Err(why) => {
                 cautions.push((task.condition, format!("no model was identified: {why}")));

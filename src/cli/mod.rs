@@ -6,6 +6,7 @@ mod arguments;
 mod check;
 mod identify;
 mod identify_arguments;
+mod misspelling;
 mod models;
 mod records;
 mod requirements;
@@ -29,7 +30,7 @@ use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_
 
 use crate::executor::start_threads;
 use arguments::{Arguments, Command, OpeningArguments};
-use terminal::{Failure, Manner, WRONG_INPUT, caution, error, say};
+use terminal::{Failure, Manner, WRONG_INPUT, caution, coded_error, error, say};
 
 /// Carries out a command line. Without a command it opens a window, on a file or on the embedded example; help, version and errors are
 /// printed here.
@@ -41,6 +42,9 @@ pub fn run(
     // A command line that is not understood is told of in the manner that it asks for.
     let asks = |option: &str| arguments.iter().any(|argument| argument == option);
     terminal::speak(Manner { quiet: asks("--quiet"), json: asks("--json") });
+    if let Some(misspelling) = misspelling::misspelt_command(&arguments) {
+        return finish(Err(misspelling));
+    }
     match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command: Some(command), quiet, json, .. }) => {
             terminal::speak(Manner { quiet, json });
@@ -126,7 +130,7 @@ fn existing(force: bool) -> Existing {
 
 fn finish(result: Result<(), Failure>) -> ExitCode {
     let status = result.err().map_or(0, |failure| {
-        error(&failure.to_string());
+        coded_error(failure.code(), &failure.to_string());
         failure.status()
     });
     ExitCode::from(terminal::end(status))

@@ -3,6 +3,10 @@
 
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
+#[cfg(unix)]
+use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(unix)]
+use std::sync::{Arc, LazyLock};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -36,6 +40,8 @@ struct Said {
     notes: Vec<String>,
     cautions: Vec<SaidCaution>,
     errors: Vec<String>,
+    /// The stable code of each error; null of one that has none.
+    error_codes: Vec<Option<&'static str>>,
 }
 
 /// A caution, and the conditions that it is of; none where it is of the whole.
@@ -55,6 +61,7 @@ static SAID: Mutex<Said> = Mutex::new(Said {
     notes: Vec::new(),
     cautions: Vec::new(),
     errors: Vec::new(),
+    error_codes: Vec::new(),
 });
 
 fn said() -> MutexGuard<'static, Said> {
@@ -124,8 +131,18 @@ pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
 
 /// Says what is wrong.
 pub(super) fn error(words: &str) {
+    coded_error(None, words);
+}
+
+/// Says what is wrong; programs that read the JSON object tell it by its code.
+pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     let mut said = said();
-    if said.manner.json { said.errors.push(plain(words, "")) } else { complain("error", words) }
+    if said.manner.json {
+        said.errors.push(plain(words, ""));
+        said.error_codes.push(code);
+    } else {
+        complain("error", words);
+    }
 }
 
 /// Prints one line on standard error; there is nowhere to complain of a failure to do so.
@@ -161,10 +178,13 @@ pub(super) fn progress_target() -> ProgressDrawTarget {
 /// An analysis that is done sooner needs no progress.
 const QUICK: Duration = Duration::from_millis(500);
 
-/// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second.
+/// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second. While there is one, Ctrl+C
+/// ends the work at its next step, with a message and the status of work that was not done.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
+    #[cfg(unix)]
+    _interruptible: Interruptible,
 }
 
 impl TerminalProgress {
@@ -172,10 +192,15 @@ impl TerminalProgress {
     pub(super) fn new(doing: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         // A template that is not understood leaves the bar its own looks.
-        if let Ok(style) = ProgressStyle::with_template(&format!("{doing} {{bar:40}} {{percent}} %")) {
+        if let Ok(style) = ProgressStyle::with_template(&format!("{doing} {{bar:40}} {{percent}} % (Ctrl+C stops)")) {
             bar.set_style(style);
         }
-        Self { bar, started: Instant::now() }
+        Self {
+            bar,
+            started: Instant::now(),
+            #[cfg(unix)]
+            _interruptible: Interruptible::new(),
+        }
     }
 }
 
@@ -186,6 +211,13 @@ impl Drop for TerminalProgress {
 }
 
 impl Progress for TerminalProgress {
+    #[cfg(unix)]
+    fn cancelled(&self) -> bool {
+        Interruptible::is_asked()
+    }
+
+    /// Elsewhere Ctrl+C ends the process at once, which leaves no half of a file either.
+    #[cfg(not(unix))]
     fn cancelled(&self) -> bool {
         false
     }
@@ -196,6 +228,49 @@ impl Progress for TerminalProgress {
         }
         self.bar.set_length(total as u64);
         self.bar.set_position(done as u64);
+    }
+}
+
+/// Work that asks whether it was interrupted (SIGINT, Ctrl+C). Without one, and from the second interruption on, a process ends at once.
+#[cfg(unix)]
+struct Interruptible;
+
+/// What an interruption does, for as long as the process lives.
+#[cfg(unix)]
+struct Interruption {
+    /// Whether there was one.
+    is_asked: Arc<AtomicBool>,
+    /// Whether the next one ends the process.
+    ends_process: Arc<AtomicBool>,
+}
+
+#[cfg(unix)]
+static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
+    use signal_hook::{consts::SIGINT, flag};
+    let interruption = Interruption { is_asked: Arc::default(), ends_process: Arc::new(AtomicBool::new(true)) };
+    // In this order: the first interruption of work only arms what the second does. Where the system refuses, Ctrl+C ends the process.
+    let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
+    let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));
+    let _ = flag::register(SIGINT, Arc::clone(&interruption.is_asked));
+    interruption
+});
+
+#[cfg(unix)]
+impl Interruptible {
+    fn new() -> Self {
+        INTERRUPTION.ends_process.store(false, Ordering::SeqCst);
+        Self
+    }
+
+    fn is_asked() -> bool {
+        INTERRUPTION.is_asked.load(Ordering::SeqCst)
+    }
+}
+
+#[cfg(unix)]
+impl Drop for Interruptible {
+    fn drop(&mut self) {
+        INTERRUPTION.ends_process.store(true, Ordering::SeqCst);
     }
 }
 
@@ -213,6 +288,9 @@ pub(super) enum Failure {
     /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]
     Option { option: &'static str, reason: String },
+    /// A word stands in place of a command or a file, and is neither.
+    #[error("{found}: there is no such command and no such file; did you mean gdcm {suggestion}?")]
+    UnknownCommand { found: String, suggestion: String },
     /// The dataset of a study is not the one that it was made with.
     #[error("{path}: {count} differences from what the study was made with, and --strict asks for none")]
     Different { path: String, count: usize },
@@ -268,6 +346,16 @@ impl Failure {
         Failure::Option { option, reason: reason.to_string() }
     }
 
+    /// The stable code by which scripts tell it from others; none where there is none yet.
+    pub(super) fn code(&self) -> Option<&'static str> {
+        match self {
+            Failure::File(error) => error.code(),
+            Failure::UnknownCommand { .. } => Some("unknown-command"),
+            Failure::Cancelled(_) => Some("stopped"),
+            _ => None,
+        }
+    }
+
     /// The exit status.
     pub(super) fn status(&self) -> u8 {
         match self {
@@ -282,6 +370,7 @@ impl Failure {
             Failure::File(FileError::Export { fault, .. }) if fault.is_of_analysis() => NOT_DONE,
             Failure::File(_)
             | Failure::Option { .. }
+            | Failure::UnknownCommand { .. }
             | Failure::Different { .. }
             | Failure::Incomplete { .. }
             | Failure::Records { .. }
@@ -396,6 +485,17 @@ pub(super) fn by_words<C: Into<Option<ConditionId>>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn an_interruption_stops_work_that_reports_its_progress_and_does_not_end_the_process() {
+        let progress = TerminalProgress::new("waiting");
+        assert!(!progress.cancelled());
+        signal_hook::low_level::raise(signal_hook::consts::SIGINT).unwrap();
+        assert!(progress.cancelled());
+        assert!(INTERRUPTION.ends_process.load(Ordering::SeqCst), "the next one ends the process");
+        assert_eq!(Failure::Cancelled(Cancelled).code(), Some("stopped"));
+    }
 
     #[test]
     fn the_same_words_of_many_conditions_are_said_once_with_the_conditions_named() {

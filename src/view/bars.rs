@@ -324,6 +324,9 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
         (Some((done, total)), ..) => format!("curves, {} % …", 100 * done / total),
         (None, Some(progress), _) => bar_words(progress),
         (None, None, Some((done, total))) => format!("answers to flight records, {} % …", 100 * done / total.max(1)),
+        (None, None, None) if let Some((done, total)) = background.couplings => {
+            format!("couplings without each condition, {} % …", 100 * done / total.max(1))
+        }
         _ if background.views > 0 => "what the views show …".to_owned(),
         _ => "what holding and releasing would cost …".to_owned(),
     }
@@ -335,5 +338,18 @@ fn standing_remark(state: &State) -> String {
     match state.analysis().and_then(|analysis| analysis.assessment.get(&id)) {
         Some(Err(why)) => format!("condition {id} is left out of the assessment: {why}"),
         _ => state.condition().flight_state().name.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_assessment_of_couplings_tells_how_far_it_is() {
+        let background = Background { couplings: Some((300, 1000)), ..Background::default() };
+        assert!(background.is_busy());
+        let words = background_words(&background, &RecordsState::default());
+        assert_eq!(words, "couplings without each condition, 30 % …");
     }
 }

@@ -410,6 +410,8 @@ pub struct Background {
     pub bars: Option<(usize, usize)>,
     /// Whether models answer to all records: steps done, of how many.
     pub time_histories: Option<(usize, usize)>,
+    /// Whether couplings are being assessed: steps done, of how many.
+    pub couplings: Option<(usize, usize)>,
     /// Jobs that the views shown wait for.
     pub views: usize,
     /// Whether a report is being written: conditions done, of how many.
@@ -428,6 +430,7 @@ impl Background {
             || self.curves.is_some()
             || self.bars.is_some()
             || self.time_histories.is_some()
+            || self.couplings.is_some()
             || self.views > 0
             || self.report.is_some()
             || self.identification.is_some()

@@ -561,6 +561,32 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
 }
 
 #[test]
+fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
+    let desk = Desk::new();
+    let wrong = SMALL.replacen("\"inputs\": [", "\"inputs\": 5, \"more\": [", 1);
+    fs::write(desk.path("large.json"), wrong).unwrap();
+    let file = fs::File::options().write(true).open(desk.path("large.json")).unwrap();
+    // More than is read: what reads it to its end says that.
+    file.set_len(gdcm_files::LARGEST_TEXT + 1).unwrap();
+    desk.gdcm(&["check", "large.json"]).assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
+    desk.gdcm(&["analyze", "large.json", "--out", "out"]).assert_failed(2, &["holds more than 128 MiB"]);
+}
+
+#[test]
+fn check_says_what_gain_cannot_be_computed_with() {
+    let desk = Desk::new();
+    let value = crate::made_up::two_lags([[1e-74, 0.0], [0.0, 1.0]], [[1.0, 0.0], [0.0, 0.9]]);
+    fs::write(desk.path("large.json"), value.to_string()).unwrap();
+    let ended = desk.gdcm(&["check", "large.json"]);
+    ended.assert_done();
+    let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("is about 1e74 in I0 → O0"), "{words}");
+    let analysed = desk.gdcm(&["analyze", "large.json", "--out", "out"]);
+    let words = analysed.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("a gain of about 1e74") && !words.contains("zero or not finite"), "{words}");
+}
+
+#[test]
 fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
     let desk = Desk::new();
     desk.write("faulty.json", |dataset| {

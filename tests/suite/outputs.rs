@@ -114,6 +114,101 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
     ended.assert_failed(1, &["standard output cannot be written: it would be larger than the system allows"]);
 }
 
+/// Runs a command that has to end by itself: one that waits for a pipe is ended after a minute, and fails the test.
+#[cfg(unix)]
+fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
+    use std::process::Stdio;
+    use std::time::{Duration, Instant};
+    let mut child = desk.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let started = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if started.elapsed() > Duration::from_secs(60) {
+            child.kill().unwrap();
+            panic!("it hangs: {arguments:?}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    Ended::of(&child.wait_with_output().unwrap())
+}
+
+/// Runs a command that is refused, and asserts its status 2 and the code of its only error.
+#[cfg(unix)]
+#[track_caller]
+fn assert_refused(desk: &Desk, arguments: &[&str], code: &str) {
+    let ended = ends(desk, &[arguments, &["--json"]].concat());
+    let said: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
+    let expected = serde_json::json!([code]);
+    assert_eq!((ended.status, &said["error_codes"]), (2, &expected), "{arguments:?}: {said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
+    let desk = Desk::new();
+    for folder in ["results", "models", "identified", "asked", "learn"] {
+        fs::create_dir(desk.path(folder)).unwrap();
+    }
+    let pipes = [
+        "pipe.html",
+        "pipe.svg",
+        "pipe.json",
+        "pipe.py",
+        "pipe.mat",
+        "results/corrections.json",
+        "identified/identified.json",
+        "asked/requirements.json",
+        "learn/example-dataset.json",
+    ];
+    for pipe in pipes {
+        assert!(std::process::Command::new("mkfifo").arg(desk.path(pipe)).status().unwrap().success());
+    }
+    let identify = ["identify", "none.csv", "--inputs", "LON", "--outputs", "Q", "--band", "1", "9"];
+    let commands: [&[&str]; 11] = [
+        &["report", "small.json", "--out", "pipe.html"],
+        &["figure", "small.json", "--view", "net-gain", "--out", "pipe.svg"],
+        &["export", "small.json", "--as", "py", "--out", "pipe.py"],
+        &["export", "small.json", "--as", "state-space", "--out", "pipe.mat"],
+        &["convert", "small.json", "--out", "pipe.json"],
+        &["analyze", "small.json", "--out", "results"],
+        &["assemble", "models", "--out", "pipe.json"],
+        &["requirements", "small.json", "--out", "asked"],
+        &["requirements", "small.json", "--write-tolerances", "pipe.json"],
+        &["example", "learn"],
+        &[&identify[..], &["--out", "identified"]].concat(),
+    ];
+    for command in commands {
+        assert_refused(&desk, command, "output-not-a-file");
+        assert_refused(&desk, &[command, &["--force"]].concat(), "output-not-a-file");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_named_pipe_as_input_is_refused_at_once_by_every_command() {
+    let desk = Desk::new();
+    let pipe = "pipe.json";
+    assert!(std::process::Command::new("mkfifo").arg(desk.path(pipe)).status().unwrap().success());
+    // An output that is there already is compared with every input.
+    fs::write(desk.path("there.json"), "{}").unwrap();
+    let identify = ["identify", "--inputs", "LON", "--outputs", "Q", "--band", "1", "9", "--out", "identified"];
+    let commands: [&[&str]; 10] = [
+        &["check", pipe],
+        &["check", "small.json", "--dataset", pipe],
+        &["analyze", pipe, "--out", "results"],
+        &["analyze", "small.json", "--levels", pipe, "--out", "results"],
+        &["analyze", "small.json", "--tolerances", pipe, "--out", "results"],
+        &["report", pipe, "--out", "report.html"],
+        &["convert", pipe, "--out", "there.json", "--force"],
+        &["assemble", ".", "--rules", pipe, "--out", "there.json", "--force"],
+        &[&identify[..], &[pipe]].concat(),
+        &[&identify[..], &["small.json", "--into", pipe]].concat(),
+    ];
+    for command in commands {
+        let ended = ends(&desk, command);
+        assert!(ended.status > 0 && ended.error.contains("named pipe"), "{command:?}: {ended:?}");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_closed_standard_output_costs_the_summary_and_nothing_else() {

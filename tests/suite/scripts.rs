@@ -87,10 +87,31 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
     let analysed = object(&["analyze", "half.json", "--out", "out", "--json"]);
     assert_eq!(analysed["cautions"][0]["conditions"], json!([10]));
     assert!(analysed["text"].as_str().unwrap().contains("Condition 7"), "{analysed}");
+    assert_eq!(analysed["error_codes"], json!([]));
     let missing = object(&["check", "missing.json", "--json"]);
+    assert_eq!(missing["error_codes"], json!([null]), "an error without a code of its own yet");
     assert!(missing["errors"][0].as_str().unwrap().starts_with("missing.json: "), "{missing}");
     let wrong = object(&["check", "--json", "--colour", "small.json"]);
     assert!(wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2), "{wrong}");
+}
+
+#[test]
+fn a_command_that_is_written_wrongly_is_told_which_one_is_meant() {
+    let desk = Desk::new();
+    for (line, meant) in [
+        (&["analize", "small.json", "--out", "out"][..], "analyze"),
+        (&["analize"], "analyze"),
+        (&["exprot", "small.json", "--as", "py", "--out", "c.py"], "export"),
+        (&["chekc", "small.json"], "check"),
+    ] {
+        let ended = desk.gdcm(&[line, &["--json"]].concat());
+        let object: Value = serde_json::from_str(&ended.out).unwrap();
+        assert_eq!((ended.status, &object["error_codes"]), (2, &json!(["unknown-command"])), "{object}");
+        let words = object["errors"][0].as_str().unwrap();
+        assert!(words.starts_with(line[0]) && words.contains(&format!("gdcm {meant}?")), "{words}");
+    }
+    // Another word is an argument too many, as before.
+    desk.gdcm(&["something", "else"]).assert_failed(2, &["else"]);
 }
 
 #[test]

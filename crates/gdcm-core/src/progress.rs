@@ -33,15 +33,48 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Asks whether a part of the work is still wanted, and tells nothing of that part's own steps.
-pub struct Untold<'a>(pub &'a dyn Progress);
+/// Reports the steps of one part of the work as that part's share of the whole.
+pub struct Portion<'a> {
+    shares: &'a Shares<'a>,
+    share: f64,
+    what: &'static str,
+    /// The share reported so far.
+    reported: Mutex<f64>,
+}
 
-impl Progress for Untold<'_> {
-    fn cancelled(&self) -> bool {
-        self.0.cancelled()
+impl<'a> Portion<'a> {
+    /// A part that is `share` of the whole, reported as the step `what`.
+    pub fn new(shares: &'a Shares<'a>, share: f64, what: &'static str) -> Self {
+        Self { shares, share, what, reported: Mutex::new(0.0) }
     }
 
-    fn advanced(&self, _done: usize, _total: usize) {}
+    /// Reports the rest of the part.
+    ///
+    /// # Errors
+    /// [`Cancelled`] where the work is not wanted any more.
+    pub fn finish(self) -> Result<(), Cancelled> {
+        self.report(1.0)
+    }
+
+    /// Reports that `done` (0 to 1) of the part is behind, never backwards.
+    fn report(&self, done: f64) -> Result<(), Cancelled> {
+        // A panic while the lock was held leaves a number that is still whole.
+        let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+        let rise = (done.min(1.0) * self.share - *reported).max(0.0);
+        *reported += rise;
+        self.shares.advance(rise, self.what)
+    }
+}
+
+impl Progress for Portion<'_> {
+    fn cancelled(&self) -> bool {
+        self.shares.progress().cancelled()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        // Whether to go on is asked by the part itself.
+        let _ = self.report(done as f64 / total.max(1) as f64);
+    }
 }
 
 /// The work was stopped before its end.
@@ -88,5 +121,36 @@ impl<'a> Shares<'a> {
         self.progress.step(what);
         self.progress.advanced((*last * PARTS) as usize, PARTS as usize);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps every number that it hears.
+    #[derive(Default)]
+    struct Heard(Mutex<Vec<usize>>);
+
+    impl Progress for Heard {
+        fn cancelled(&self) -> bool {
+            false
+        }
+
+        fn advanced(&self, done: usize, _total: usize) {
+            self.0.lock().unwrap().push(done);
+        }
+    }
+
+    #[test]
+    fn a_portion_reports_its_own_steps_as_its_share_of_the_whole() {
+        let heard = Heard::default();
+        let shares = Shares::new(&heard);
+        let portion = Portion::new(&shares, 0.5, "a half");
+        for (done, total) in [(1, 4), (2, 4), (1, 4)] {
+            portion.advanced(done, total);
+        }
+        portion.finish().unwrap();
+        assert_eq!(*heard.0.lock().unwrap(), [125, 250, 250, 500], "of a thousand, never backwards");
     }
 }

@@ -35,6 +35,14 @@ pub enum FileError {
         /// What it is, in words.
         kind: &'static str,
     },
+    /// A named pipe, a socket or a device stands where a file is to be written.
+    #[error("{}: this is {kind}, not a file, and is not written to; give the name of a file", sanitized_path(path))]
+    OutputNotAFile {
+        /// The path.
+        path: PathBuf,
+        /// What it is, in words.
+        kind: &'static str,
+    },
     /// The system does not let the file be read.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
     Unreadable {
@@ -255,6 +263,15 @@ impl FileError {
             *remedy = remedy.replace("{file}", &name(path)).replace("{stem}", &name(&path.with_extension("")));
         }
         FileError::Variables { path: path.to_owned(), fault }
+    }
+
+    /// The stable code of an error that scripts tell from others; none where there is none yet.
+    pub fn code(&self) -> Option<&'static str> {
+        match self {
+            Self::NotAFile { .. } => Some("input-not-a-file"),
+            Self::OutputNotAFile { .. } => Some("output-not-a-file"),
+            _ => None,
+        }
     }
 
     /// Whether the reader was stopped, by whoever asked for the file.

@@ -150,7 +150,7 @@ pub(super) fn json_error(text: &[u8], path: &Path, place: Location, error: &serd
                 FileError::content(path, ContentError::new(place, ContentFault::NotFinite { found, line, column }))
             }
             // A word where the reader can tell at once that none of those it knows will stand there.
-            None if serde_json::from_slice::<IgnoredAny>(text).is_ok() => {
+            None if is_json_so_far(text) => {
                 let (expected, found) = ("a text in quotation marks".to_owned(), "something else".to_owned());
                 FileError::content(path, ContentError::new(place, ContentFault::Type { expected, found, line, column }))
             }
@@ -159,6 +159,14 @@ pub(super) fn json_error(text: &[u8], path: &Path, place: Location, error: &serd
                 FileError::NotJson { path: path_owned, place: Box::new(place), line, column, reason }
             }
         },
+    }
+}
+
+/// Whether a text is JSON, or the beginning of some.
+fn is_json_so_far(text: &[u8]) -> bool {
+    match serde_json::from_slice::<IgnoredAny>(text) {
+        Ok(_) => true,
+        Err(error) => error.is_eof(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Files: datasets, studies and results. The only place that touches the file system.
 
+mod beginning;
 mod corrections_file;
 mod dataset_file;
 mod exports;
@@ -23,6 +24,7 @@ mod study_file;
 mod user_state;
 pub mod variables;
 
+pub use beginning::check_beginning;
 pub use corrections_file::*;
 pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,

@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 use tempfile::NamedTempFile;
 
 use super::file_error::FileError;
+use super::source::kind_of;
 
 /// What becomes of a file that stands where another is to be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,21 +70,22 @@ impl OutputSet {
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut there = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
-            if self.inputs.iter().any(|input| same_file::is_same_file(path, input).unwrap_or(false)) {
+            let Ok(found) = fs::metadata(path) else { continue };
+            // Before the path is opened for any purpose: opening a pipe waits for its other end. Replacing a pipe or a device by a file
+            // would break what others use it for.
+            if let Some(kind) = kind_of(found.file_type()) {
+                return Err(FileError::OutputNotAFile { path: path.to_owned(), kind });
+            }
+            if self.inputs.iter().any(|input| is_same_file(path, input)) {
                 return Err(FileError::Input { path: path.to_owned() });
             }
-            match fs::metadata(path) {
-                Ok(found) if found.is_dir() => return Err(FileError::Directory { path: path.to_owned() }),
-                Ok(found) if found.permissions().readonly() => {
-                    return Err(FileError::unwritable(path, "it is read-only"));
-                }
-                // Replacing a device or a pipe by a file would break what others use it for.
-                Ok(found) if !found.is_file() => {
-                    return Err(FileError::unwritable(path, "this is not an ordinary file"));
-                }
-                Ok(_) => there.push(path.to_owned()),
-                Err(_) => {}
+            if found.is_dir() {
+                return Err(FileError::Directory { path: path.to_owned() });
             }
+            if found.permissions().readonly() {
+                return Err(FileError::unwritable(path, "it is read-only"));
+            }
+            there.push(path.to_owned());
         }
         if there.is_empty() || self.existing == Existing::Replace {
             Ok(())
@@ -152,6 +154,12 @@ impl OutputSet {
         }
         Ok(())
     }
+}
+
+/// Whether an output is an input, through whatever links. An input that is a pipe or a device is none, and is not opened.
+fn is_same_file(path: &Path, input: &Path) -> bool {
+    let Ok(found) = fs::metadata(input) else { return false };
+    kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
 /// A file's line among checksums.
@@ -450,6 +458,26 @@ mod tests {
         let refused = OutputSet::new(Existing::Keep, Vec::new()).check(&paths);
         assert!(matches!(refused, Err(FileError::Exists { paths }) if paths == there));
         assert!(OutputSet::new(Existing::Replace, Vec::new()).check(&paths).is_ok());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_or_a_device_is_refused_before_it_is_opened_as_output_and_as_input() {
+        let directory = tempfile::tempdir().unwrap();
+        let [pipe, file] = ["pipe", "file"].map(|name| directory.path().join(name));
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        fs::write(&file, "before").unwrap();
+        for existing in [Existing::Keep, Existing::Replace] {
+            let mut set = OutputSet::new(existing, vec![file.clone()]);
+            for (path, expected) in [(pipe.as_path(), "a named pipe"), (Path::new("/dev/null"), "a device")] {
+                let error = set.check(&[path]).unwrap_err();
+                assert!(matches!(&error, FileError::OutputNotAFile { kind, .. } if *kind == expected), "{error}");
+                assert_eq!(error.code(), Some("output-not-a-file"));
+                assert_eq!(set.add(path, |_| Ok(())).unwrap_err().code(), error.code());
+            }
+        }
+        let reading_pipe = OutputSet::new(Existing::Replace, vec![pipe]);
+        assert!(reading_pipe.check(&[&file]).is_ok(), "the pipe is not opened to see whether it is the file");
     }
 
     #[cfg(unix)]

@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::fs;
 use std::fs::{File, FileType};
-use std::io::{ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use flate2::bufread::GzDecoder;
+use flate2::bufread::{GzDecoder, MultiGzDecoder};
 use gdcm_core::dataset::limits::LARGEST_TEXT;
 use sha2::{Digest, Sha256};
 
@@ -57,10 +57,13 @@ pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(text)
 }
 
-/// The bytes of a file of at most `most`.
-pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
+/// A file to read from, and its length \[bytes\].
+///
+/// # Errors
+/// Where there is none, or something else: opening a pipe waits for somebody who writes into it, and a directory can be opened on some
+/// systems.
+fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
-    // Opening a pipe waits for somebody who writes into it, and a directory can be opened on some systems.
     let metadata = fs::metadata(path).map_err(failed)?;
     if metadata.is_dir() {
         return Err(FileError::Directory { path: path.to_owned() });
@@ -68,8 +71,22 @@ pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> 
     if let Some(kind) = kind_of(metadata.file_type()) {
         return Err(FileError::NotAFile { path: path.to_owned(), kind });
     }
-    let mut file = File::open(path).map_err(failed)?.take(most + 1);
-    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(most)).unwrap_or(0));
+    Ok((File::open(path).map_err(failed)?, metadata.len()))
+}
+
+/// A file's text from its beginning on, unpacked where the file is packed.
+pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
+    let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
+    let begin = file.fill_buf().map_err(|error| FileError::reading(path, &error))?;
+    if begin.starts_with(&GZIP_MAGIC) { Ok(Box::new(MultiGzDecoder::new(file))) } else { Ok(Box::new(file)) }
+}
+
+/// The bytes of a file of at most `most`.
+pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(path, &error);
+    let (file, length) = open_file(path)?;
+    let mut file = file.take(most + 1);
+    let mut bytes = Vec::with_capacity(usize::try_from(length.min(most)).unwrap_or(0));
     while file.by_ref().take(CHUNK as u64).read_to_end(&mut bytes).map_err(failed)? > 0 {
         budget.work(CHUNK as u64, "").map_err(|fault| FileError::variables(path, fault))?;
     }

@@ -276,6 +276,11 @@ pub fn open_study_of(path: &Path, dataset: &Path, budget: &ReadingBudget<'_>) ->
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
+/// Whether a text has the structure of a study, as far as it goes.
+pub(super) fn check_study_text(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
+    FORMAT.decode::<StudyText>(text, path, budget).map(drop)
+}
+
 /// The study that a source holds; its dataset is at `moved`, or where the study says.
 pub(super) fn study_from(
     source: &Source<'_>,

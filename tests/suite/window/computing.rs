@@ -242,6 +242,26 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
 }
 
 #[test]
+fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
+    let trap = Trap::default();
+    let mut window = window_with(example(), trap.setup());
+    settle(&mut window);
+    show(&mut window, View::Couplings);
+    let steps = |window: &Window| state(window).results.background.couplings;
+    wait_until(&mut window, "a part of the assessment", |window| steps(window).is_some_and(|(done, _)| done > 0));
+    // However fast the machine is, what follows the fits without each condition is not computed before the click.
+    let closed = trap.close();
+    wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
+    assert!(state(&window).couplings().is_none() && steps(&window).is_some_and(|(done, total)| done < total));
+    window.get_by_label("Stop").click();
+    window.run_steps(3);
+    assert!(steps(&window).is_none() && state(&window).results.background.stopped);
+    drop(closed);
+    click(&mut window, "Compute");
+    wait_until(&mut window, "what couplings do", |window| state(window).couplings().is_some());
+}
+
+#[test]
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
     let hasty = ProofBudget { work: 0, listing: 0, ..ProofBudget::default() };
     let engine = move || Engine::default().with_proofs_within(hasty);

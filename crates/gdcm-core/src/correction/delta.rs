@@ -81,7 +81,7 @@ pub(crate) fn band_delay_s(phase: impl Iterator<Item = f64>, omega: &[f64], weig
 }
 
 /// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
-const LARGEST_DB: f64 = 1000.0;
+pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
 /// The mismatch of every response that both models have and whose ratio is finite and not zero, at the frequencies that count:
 /// all where `counted` is none (M4a).
@@ -94,7 +94,7 @@ pub fn mismatch_table(
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
         let mismatch =
             mismatch.coherence_weighted(coherence_weights.map(|coherence_weights| &coherence_weights[pair]))?;
-        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_DB).then_some(mismatch)
+        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_GAIN_DB).then_some(mismatch)
     })
 }
 

@@ -10,11 +10,12 @@
 use nalgebra::DMatrix;
 
 use super::{
-    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown, WeightedCondition,
+    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown, UnknownLayout,
+    WeightedCondition,
 };
 use crate::dataset::ConditionId;
 use crate::executor::{Executor, Sequential, each};
-use crate::progress::{Cancelled, Progress, Shares, Untold};
+use crate::progress::{Cancelled, Portion, Progress, Shares};
 use crate::uncertainty::student_quantile;
 
 /// The couplings of a problem, and how they were found.
@@ -35,9 +36,13 @@ pub struct CouplingFit {
     pub undetermined: Vec<Unknown>,
 }
 
+/// Memory that the blocks of several conditions may take at once \[bytes\].
+const BLOCK_MEMORY: usize = 256 << 20;
+
 /// Fits the couplings of a problem: five weighted linear least-squares problems, one after the other (M16.2).
 ///
-/// The same to the last bit whoever carries out its pieces.
+/// The same to the last bit whoever carries out its pieces. `progress` is told of every condition of every pass, and asked every few
+/// frequencies whether to go on.
 ///
 /// # Errors
 /// [`CouplingError`] where tables do not fit together, no response counts, the loop of a pass is singular, the unknowns cannot be told
@@ -54,30 +59,25 @@ pub fn fit_couplings(
     if !conditions.iter().any(WeightedCondition::counts) {
         return Err(CouplingError::NothingToFit { conditions: conditions.len() });
     }
-    // The normal equations of the pass after these couplings.
-    let equations = |last: &CouplingMatrices| {
-        let blocks = each(executor, &conditions, |condition| {
-            if progress.cancelled() {
-                return Err(CouplingError::Cancelled(Cancelled));
-            }
-            ConditionBlocks::of(condition, last, &fed_back)
-        });
-        let mut equations = NormalEquations::zeros(unknowns.len());
-        for (blocks, condition) in blocks.into_iter().zip(&conditions) {
-            equations.add(&unknowns, &blocks?, &fed_back, airspeeds.scaled(condition.airspeed_kt));
-        }
-        Ok::<_, CouplingError>(equations)
-    };
-    let mut matrices = CouplingMatrices::none(airspeeds.clone(), problem.inputs(), problem.outputs());
-    let (mut coefficients, mut residual, mut undetermined) = (Vec::new(), 0.0, Vec::new());
     let solves = problem.options.solves.max(1);
-    for solve in 0..solves {
-        let pass = equations(&matrices)?.solve(&unknowns, problem.options.ridge)?;
+    let fitting = Fitting {
+        conditions: &conditions,
+        fed_back: &fed_back,
+        layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
+        shares: Shares::new(progress),
+        // The solution of a pass counts as one condition more.
+        share: 1.0 / (solves * (conditions.len() + 1)) as f64,
+    };
+    let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
+    let (mut coefficients, mut residual, mut undetermined) = (Vec::new(), 0.0, Vec::new());
+    for _ in 0..solves {
+        let pass = fitting.equations(&matrices, executor)?.solve(&unknowns, problem.options.ridge)?;
         matrices = matrices.with(&unknowns, pass.coefficients.as_slice());
         coefficients.push(pass.coefficients.as_slice().to_vec());
         (residual, undetermined) = (pass.residual, pass.undetermined);
-        progress.advanced(solve + 1, solves);
+        fitting.advance()?;
     }
+    fitting.shares.next(1.0, FITTING)?;
     matrices.check()?;
     let is_left_out = |output: &usize| problem.kind.feeds_back() && !fed_back.contains(output);
     Ok(CouplingFit {
@@ -88,6 +88,49 @@ pub fn fit_couplings(
         undetermined: undetermined.into_iter().map(|place| unknowns[place]).collect(),
         unknowns,
     })
+}
+
+/// The step that a fit reports.
+const FITTING: &str = "mixing and feedback";
+
+/// What the passes of a fit have in common.
+struct Fitting<'a> {
+    conditions: &'a [WeightedCondition<'a>],
+    fed_back: &'a [usize],
+    layout: UnknownLayout,
+    shares: Shares<'a>,
+    /// What a condition of a pass is of the whole.
+    share: f64,
+}
+
+impl Fitting<'_> {
+    /// The normal equations of the pass after these couplings.
+    ///
+    /// So many conditions are carried out side by side as there is memory for their blocks; they are added in their order.
+    fn equations(
+        &self,
+        last: &CouplingMatrices,
+        executor: &dyn Executor,
+    ) -> Result<NormalEquations<'_>, CouplingError> {
+        let (inputs, airspeeds) = (last.feedback().nrows(), last.airspeeds());
+        let together = (BLOCK_MEMORY / ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1)).max(1);
+        let mut equations = NormalEquations::zeros(&self.layout, inputs, self.fed_back.len());
+        for conditions in self.conditions.chunks(together) {
+            let blocks = each(executor, conditions, |condition| {
+                let blocks = ConditionBlocks::new(condition, last, self.fed_back, self.shares.progress())?;
+                self.advance()?;
+                Ok::<_, CouplingError>(blocks)
+            });
+            for (blocks, condition) in blocks.into_iter().zip(conditions) {
+                equations.add(&blocks?, airspeeds.scaled(condition.airspeed_kt));
+            }
+        }
+        Ok(equations)
+    }
+
+    fn advance(&self) -> Result<(), Cancelled> {
+        self.shares.advance(self.share, FITTING)
+    }
 }
 
 /// Conditions below which there are no error bars.
@@ -116,8 +159,9 @@ pub fn left_out_fits(
     let shares = Shares::new(progress);
     let fits = each(executor, 0..count, |place| {
         let condition = problem.conditions[place].id;
-        let fit = fit_couplings(&problem.without(place), &Sequential, &Untold(progress))?;
-        shares.advance(1.0 / count as f64, "mixing and feedback without each condition")?;
+        let portion = Portion::new(&shares, 1.0 / count as f64, "mixing and feedback without each condition");
+        let fit = fit_couplings(&problem.without(place), &Sequential, &portion)?;
+        portion.finish()?;
         Ok(LeftOutFit { condition, fit })
     });
     fits.into_iter().collect()

@@ -1,7 +1,8 @@
 //! Mixing and feedback against known answers by independent numpy code (`tests/data/reference/mixing.json`), what holds of any, what a fit
 //! does not depend on, and what couplings do where a representative lacks a response (M16).
 
-use std::sync::{Arc, LazyLock};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
 
 use nalgebra::{Complex, DMatrix, DVector, dmatrix};
 use proptest::prelude::*;
@@ -397,6 +398,57 @@ fn work_that_is_no_longer_wanted_ends() {
     assert!(left_out_fits(&disturbed(), &Sequential, &Impatient).is_err());
 }
 
+/// Keeps what it hears, and wants the work to end after so many questions.
+struct Listener {
+    questions_left: AtomicUsize,
+    heard: Mutex<Vec<usize>>,
+}
+
+impl Listener {
+    fn patient_for(questions: usize) -> Self {
+        Self { questions_left: AtomicUsize::new(questions), heard: Mutex::default() }
+    }
+}
+
+impl Progress for Listener {
+    fn cancelled(&self) -> bool {
+        let next = |left: usize| left.checked_sub(1);
+        self.questions_left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).is_err()
+    }
+
+    fn advanced(&self, done: usize, total: usize) {
+        assert_eq!(total, 1000);
+        self.heard.lock().unwrap().push(done);
+    }
+}
+
+#[test]
+fn a_fit_reports_every_condition_of_every_pass_and_never_goes_back() {
+    let listener = Listener::patient_for(usize::MAX);
+    fit_couplings(&disturbed(), &Sequential, &listener).unwrap();
+    let heard = listener.heard.into_inner().unwrap();
+    // Four conditions and the solution, five times, and the end.
+    assert_eq!((heard.len(), heard[0], heard[4], *heard.last().unwrap()), (26, 40, 200, 1000), "{heard:?}");
+    assert!(heard.is_sorted());
+}
+
+#[test]
+fn a_fit_of_one_large_condition_can_be_stopped_within_a_pass() {
+    let problem = many_channels(2, 1, 200);
+    let listener = Listener::patient_for(3);
+    let stopped = fit_couplings(&problem, &Sequential, &listener);
+    assert_eq!(stopped, Err(CouplingError::Cancelled(crate::progress::Cancelled)));
+    assert!(listener.heard.into_inner().unwrap().is_empty(), "before the first condition of the first pass was done");
+}
+
+#[test]
+fn the_fits_without_each_condition_are_reported_step_by_step() {
+    let listener = Listener::patient_for(usize::MAX);
+    left_out_fits(&disturbed(), &Sequential, &listener).unwrap();
+    let heard = listener.heard.into_inner().unwrap();
+    assert!(heard.len() >= 4 * 20 && heard.is_sorted() && *heard.last().unwrap() >= 999, "{heard:?}");
+}
+
 /// The problem with outputs and inputs in other units: so many of the new ones to one of the old.
 fn in_other_units(problem: &CouplingProblem, outputs: &[f64], inputs: &[f64]) -> CouplingProblem {
     let scaled = |of: &FrequencyResponse| {
@@ -599,4 +651,62 @@ fn a_response_that_a_physics_model_lacks_is_lacking_once_coupled_and_only_what_d
     }
     let fed_back = constant(&mixing, &dmatrix![0.0, 0.0, 0.1; 0.0, 0.0, 0.0]).response(&lacking, 60.0);
     assert!(fed_back.curves().iter().all(|(_, curve)| !curve[3].is_finite() && curve[4].is_finite()));
+}
+
+/// A synthetic problem of as many inputs as outputs, each response a lag of its own, flown with small couplings.
+fn many_channels(channels: usize, conditions: usize, points: usize) -> CouplingProblem {
+    let mut state = 88_172_645_463_325_252_u64;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let omega = FrequencyGrid::logarithmic(Band::new(0.3, 12.0).unwrap(), points).omega().to_vec();
+    let couplings = {
+        let mut small = |row: usize, column: usize| {
+            let unit = if row == column { 1.0 } else { 0.0 };
+            unit + 0.1 * random()
+        };
+        let mixing = DMatrix::from_fn(channels, channels, &mut small);
+        constant(&mixing, &DMatrix::from_fn(channels, channels, |_, _| 0.02 * small(0, 1)))
+    };
+    let conditions = (0..conditions).map(|place| {
+        let physics = FrequencyResponse::new(PairTable::from_fn(channels, channels, |pair| {
+            let gain = if pair.output == pair.input { 3.0 } else { 0.6 * random() };
+            let lag = 1.5 + random();
+            omega.iter().map(|&omega| Complex::from(gain) / Complex::new(lag, omega)).collect()
+        }));
+        let airspeed_kt = 20.0 * place as f64;
+        CouplingCondition {
+            id: ConditionId(place as i64 + 1),
+            airspeed_kt,
+            flight: couplings.response(&physics, airspeed_kt),
+            physics: Arc::new(physics),
+            usable: PairTable::filled(channels, channels, true),
+            deviation: None,
+            coherence: None,
+        }
+    });
+    CouplingProblem {
+        kind: CouplingKind::MixingAndFeedback,
+        conditions: conditions.collect(),
+        on_axis: PairTable::from_fn(channels, channels, |pair| pair.output == pair.input),
+        omega: omega.clone().into(),
+        options: CouplingOptions::default(),
+    }
+}
+
+#[test]
+#[ignore = "figures of the release build: docs/performance.md"]
+fn twenty_inputs_and_outputs_are_fitted_within_ten_seconds() {
+    for (channels, conditions) in [(5, 11), (20, 4), (32, 4), (4, 2000)] {
+        let problem = many_channels(channels, conditions, 200);
+        let started = std::time::Instant::now();
+        let found = fit(&problem);
+        let took_s = started.elapsed().as_secs_f64();
+        let residual = found.residual;
+        println!("{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; residual {residual:.1e}");
+        assert!(residual < 1e-12 && (channels > 20 || took_s < 10.0), "{took_s} s");
+    }
 }

@@ -65,6 +65,16 @@ impl<'a> WeightedCondition<'a> {
         }
     }
 
+    /// Number of outputs, `p`.
+    pub(super) fn outputs(&self) -> usize {
+        self.outputs
+    }
+
+    /// Number of inputs, `m`.
+    pub(super) fn inputs(&self) -> usize {
+        self.inputs
+    }
+
     /// Whether any response counts anywhere.
     pub(super) fn counts(&self) -> bool {
         self.weights.iter().any(|weight| weight.s > 0.0)

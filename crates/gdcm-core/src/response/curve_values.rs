@@ -72,7 +72,7 @@ pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
 
 /// The measured response at each `omega` \[rad/s\]: linear on log omega in dB and in unwrapped phase.
 ///
-/// Not a number outside the measured frequencies: nothing is extrapolated.
+/// Not a number outside the measured frequencies: nothing is extrapolated. Zero beside a measured zero, which has no dB.
 pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     let places: Vec<Option<Place>> = omega.iter().map(|&omega| Place::of(response.omega(), omega)).collect();
     response.values().map(|_, values| {
@@ -82,7 +82,9 @@ pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<
         places
             .iter()
             .map(|place| match place {
-                Some(place) => Complex::from_polar(db_to_ratio(place.between(&magnitude_db)), place.between(&phase)),
+                Some(place) => {
+                    Complex::from_polar(db_to_ratio(place.between_magnitudes_db(&magnitude_db)), place.between(&phase))
+                }
                 None => Complex::new(f64::NAN, f64::NAN),
             })
             .collect()
@@ -139,6 +141,14 @@ impl Place {
         }
         let (low, high) = (values[self.after - 1], values[self.after]);
         low + self.fraction * (high - low)
+    }
+
+    /// As [`Place::between`] of magnitudes \[dB\], of which one may be that of zero: minus infinity.
+    fn between_magnitudes_db(&self, values: &[f64]) -> f64 {
+        let value = self.between(values);
+        // The difference of two infinities, or one weighed against a number.
+        let is_beside_zero = self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
+        if is_beside_zero { f64::NEG_INFINITY } else { value }
     }
 }
 
@@ -297,6 +307,17 @@ mod tests {
         let found = found.iter().next().unwrap().1;
         assert!(found[0].is_nan() && found[1] == 0.4 && (found[2] - 0.7).abs() < 1e-15 && found[3] == 1.0);
         assert_eq!(coherence_at(&measured(), &[10.0]), None);
+    }
+
+    #[test]
+    fn a_measured_zero_is_zero_beside_it_too() {
+        let table = |values: [f64; 4]| PairTable::filled(1, 1, values.to_vec());
+        let (re, im) = (table([2.0, 0.0, 0.0, 2.0]), table([0.0; 4]));
+        let response = MeasuredResponse::new(vec![1.0, 2.0, 3.0, 4.0], &re, &im, None).unwrap();
+        let found = interpolate(&response, &[1.0, 1.5, 2.0, 2.5, 3.5, 4.0]);
+        let magnitudes: Vec<f64> = found[crate::dataset::Pair::new(0, 0)].iter().map(|value| value.norm()).collect();
+        assert_eq!(magnitudes[1..5], [0.0; 4]);
+        assert!((magnitudes[0] - 2.0).abs() < 1e-15 && (magnitudes[5] - 2.0).abs() < 1e-15);
     }
 
     #[test]

@@ -48,6 +48,19 @@ impl FrequencyResponse {
         &self.curves
     }
 
+    /// The responses that are zero at every frequency at which they are finite, of which there is one at least: such a response is not
+    /// there, whatever it lacks elsewhere.
+    pub fn zero_where_finite(&self) -> Vec<Pair> {
+        let mut found = Vec::new();
+        for (pair, curve) in self.curves.iter() {
+            let mut finite = curve.iter().filter(|value| value.is_finite()).peekable();
+            if finite.peek().is_some() && finite.all(|value| value.norm() == 0.0) {
+                found.push(pair);
+            }
+        }
+        found
+    }
+
     /// The responses that are not finite at some frequency.
     pub fn not_finite(&self) -> Vec<Pair> {
         let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());

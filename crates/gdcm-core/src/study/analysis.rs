@@ -224,8 +224,8 @@ impl ConditionAnalysis {
 pub enum ConditionFailure {
     /// The two representatives share no response that both have over the whole band.
     #[error(
-        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero or not \
-         finite somewhere; choose another representative, or another band{because}"
+        "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
+         the range of gains somewhere; choose another representative, or another band{because}"
     )]
     NothingToCompare {
         /// Name of the physics representative.

@@ -1,7 +1,8 @@
 //! What the engineer has to know about a result that could be had all the same.
 
+use crate::correction::LARGEST_GAIN_DB;
 use crate::fidelity::{DiscontinuityError, MeasuredPairs};
-use crate::response::LargeEntry;
+use crate::response::{LargeEntry, PolarResponse};
 
 use super::*;
 
@@ -23,7 +24,9 @@ pub enum Caution {
         model: BundleModel,
         /// The measuring responses that it lacks and another model of its bundle has.
         lacks: Vec<Pair>,
-        /// Why it lacks them, where they are not finite; otherwise they are zero.
+        /// Those of them that are zero wherever it has values.
+        zero: Vec<Pair>,
+        /// Why it lacks others that are not finite; the rest is zero somewhere in the band.
         why: Option<NotFinite>,
         /// Whether it was pinned, in vain.
         pinned: bool,
@@ -36,6 +39,22 @@ pub enum Caution {
         responses: Vec<Pair>,
         /// Why they are not.
         why: NotFinite,
+    },
+    /// A measured model has responses of which every measured value is zero: they were not measured, or not found by their names.
+    MissingResponses {
+        /// Which model.
+        model: BundleModel,
+        /// The responses.
+        responses: Vec<Pair>,
+    },
+    /// Two models differ in some responses by a factor that is no gain: beyond 1e50 or 1e-50 (M6).
+    GainsOutOfRange {
+        /// The physics model.
+        physics: String,
+        /// The identified model.
+        identified: String,
+        /// The responses.
+        responses: Vec<GainOutOfRange>,
     },
     /// Responses of a representative that are treated as structurally zero (M6a).
     NumericallyNothing {
@@ -66,6 +85,36 @@ pub enum Caution {
     },
 }
 
+/// A response with a gain, flight over physics, that cannot be computed with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GainOutOfRange {
+    /// The response.
+    pub pair: Pair,
+    /// The gain farthest from one within the band, as the nearest power of ten.
+    pub power_of_ten: i32,
+}
+
+impl GainOutOfRange {
+    /// Those of two models.
+    pub(super) fn of_models(physics: &PolarResponse, identified: &PolarResponse) -> Vec<Self> {
+        physics.curves().pairs().filter_map(|pair| Self::of_pair(physics, identified, pair)).collect()
+    }
+
+    /// That of one response; none where one of the models lacks it, or its gain can be computed with.
+    pub(super) fn of_pair(physics: &PolarResponse, identified: &PolarResponse, pair: Pair) -> Option<Self> {
+        let (physics, identified) = (physics.curves()[pair].as_ref()?, identified.curves()[pair].as_ref()?);
+        let gains_db = identified.magnitude_db.iter().zip(&physics.magnitude_db).map(|(flight, model)| flight - model);
+        let farthest_db = gains_db.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        if farthest_db.abs() < LARGEST_GAIN_DB {
+            return None;
+        }
+        Some(Self { pair, power_of_ten: (farthest_db / 20.0).round() as i32 })
+    }
+}
+
+/// The range of gains that are computed with, in words.
+const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
+
 /// A model by its bundle and its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BundleModel {
@@ -90,21 +139,52 @@ impl fmt::Display for BundleModel {
 /// Why a response has no G and no D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
-    /// It is zero or not finite somewhere in the band, in one of the representatives.
-    ZeroOrNotFinite,
+    /// It is zero over the whole band in the representative of this bundle.
+    Zero(BundleKind),
+    /// It is zero at some frequency of the band in the representative of this bundle.
+    ZeroSomewhere(BundleKind),
+    /// It is not finite somewhere in the band in the representative of this bundle.
+    NotFinite(BundleKind),
+    /// The gain, flight over physics, is about this power of ten: beyond 1e50 or 1e-50.
+    GainOutOfRange(i32),
     /// It is numerically nothing in the representative of this bundle (M6a).
     NumericallyNothing(BundleKind),
     /// No frequency of the identified representative's response is coherent enough, or all lie outside its valid band (M4a).
     NotCoherent,
 }
 
+impl Undefined {
+    /// Its stable code.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Zero(_) => "response-zero",
+            Self::ZeroSomewhere(_) => "response-zero-somewhere",
+            Self::NotFinite(_) => "response-not-finite",
+            Self::GainOutOfRange(_) => "gain-out-of-range",
+            Self::NumericallyNothing(_) => "response-numerically-nothing",
+            Self::NotCoherent => "response-not-coherent",
+        }
+    }
+}
+
 impl fmt::Display for Undefined {
     /// The reason in words that begin with "its response".
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Undefined::ZeroOrNotFinite => {
-                formatter.write_str("its response is zero or not finite somewhere in the band")
+            Undefined::Zero(bundle) => {
+                write!(formatter, "its response is zero over the whole band in the {bundle} model")
             }
+            Undefined::ZeroSomewhere(bundle) => {
+                write!(formatter, "its response is zero at some frequency of the band in the {bundle} model")
+            }
+            Undefined::NotFinite(bundle) => {
+                write!(formatter, "its response is not finite at some frequency of the band in the {bundle} model")
+            }
+            Undefined::GainOutOfRange(power_of_ten) => write!(
+                formatter,
+                "its response has a gain of about 1e{power_of_ten} between the physics and the identified model, and {GAIN_RANGE}: \
+                 check the units and the matrices of both"
+            ),
             Undefined::NotCoherent => formatter.write_str(
                 "its response was not measured: no frequency of the band is coherent enough, or lies in the valid band",
             ),
@@ -193,6 +273,22 @@ impl Caution {
         (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
     }
 
+    /// Its stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Caution::HeldButUndefined { .. } => "held-but-undefined",
+            Caution::NoSuggestions(_) => "no-suggestions",
+            Caution::SetAside { .. } => "set-aside",
+            Caution::NotFinite { .. } => "response-not-finite",
+            Caution::MissingResponses { .. } => "response-missing",
+            Caution::GainsOutOfRange { .. } => "gain-out-of-range",
+            Caution::NumericallyNothing { .. } => "response-numerically-nothing",
+            Caution::NotCoherent { .. } => "not-coherent",
+            Caution::CoherenceNotUsed => "coherence-not-used",
+            Caution::UnusualGain { .. } => "unusual-gain",
+        }
+    }
+
     /// Whether it says that a model is set aside.
     pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
@@ -212,14 +308,32 @@ impl Caution {
         match self {
             Caution::HeldButUndefined { pair, why } => format!("{} is not held: {}", pair_name(*pair), why),
             Caution::NoSuggestions(error) => error.to_string(),
-            Caution::SetAside { model, lacks, why, pinned } => {
-                let why = why.map_or("zero somewhere in the band".to_owned(), |why| why.to_string());
+            Caution::SetAside { model, lacks, zero, why, pinned } => {
+                let why = match why {
+                    None if zero == lacks => "zero over the whole band".to_owned(),
+                    None => "zero somewhere in the band".to_owned(),
+                    Some(why) if zero.is_empty() => why.to_string(),
+                    Some(why) => format!("{} zero wherever it has values; of the others, {why}", names(zero)),
+                };
                 let pin = if *pinned { "; it is not used as representative, as was chosen" } else { "" };
                 let lacks = names(lacks);
                 format!("{model} is set aside: it has no {lacks}, which another model of its bundle has ({why}){pin}")
             }
             Caution::NotFinite { model, responses, why } => {
                 format!("{} has no {} over the whole band: {}", model, names(responses), why)
+            }
+            Caution::MissingResponses { model, responses } => format!(
+                "{model} has no {}: every value in its file is zero, as where a response was not measured or its channels have other \
+                 names; give the response, or reject the model",
+                names(responses)
+            ),
+            Caution::GainsOutOfRange { physics, identified, responses } => {
+                let gains = responses.iter().map(|of| format!("1e{} in {}", of.power_of_ten, pair_name(of.pair)));
+                format!(
+                    "the gain between physics model \"{physics}\" and identified model \"{identified}\" is about {}, and {GAIN_RANGE}: \
+                     these responses are not compared; check the units and the matrices of both models",
+                    gains.collect::<Vec<_>>().join(", ")
+                )
             }
             Caution::NumericallyNothing { model, responses } => format!(
                 "of {model}, {} are numerically nothing ({NOTHING}): they have no G and no D, as if they were zero",
@@ -262,8 +376,8 @@ fn short(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) { format!("{gain:.3}") } else { format!("{gain:.2e}") }
 }
 
-/// What the kept models of a bundle lack in a band that ends at `top` \[rad/s\]: those set aside, and those that have responses
-/// which are not finite.
+/// What the kept models of a bundle lack in a band that ends at `top` \[rad/s\]: those set aside, those that have responses which are
+/// not finite, and measured ones of which responses are missing.
 pub(super) fn of_models(
     condition: &Condition,
     choice: &BundleChoice,
@@ -272,24 +386,36 @@ pub(super) fn of_models(
     measured: &MeasuredPairs,
     top: f64,
 ) -> Vec<Caution> {
-    let caution = |index: usize| {
-        let (lacks, not_finite) = (&measured.lacks[index], responses[index].not_finite());
-        let name = &condition.bundle(bundle)[index].name;
+    let mut cautions = Vec::new();
+    for (index, response) in responses.iter().enumerate() {
+        let Model { name, dynamics, .. } = &condition.bundle(bundle)[index];
+        if choice.rejected.contains(name) {
+            continue;
+        }
         let model = BundleModel::of(condition, bundle, index);
-        let why = NotFinite::of(&condition.bundle(bundle)[index].dynamics, top);
+        let zero = response.zero_where_finite();
+        // What is zero wherever it has values is not there: a wider measurement would not bring it.
+        let mut not_finite = response.not_finite();
+        not_finite.retain(|pair| !zero.contains(pair));
+        let why = NotFinite::of(dynamics, top);
+        let lacks = measured.lacks[index].clone();
+        if matches!(dynamics, Dynamics::Measured(_)) {
+            let missing: Vec<Pair> = zero.iter().copied().filter(|pair| !lacks.contains(pair)).collect();
+            if !missing.is_empty() {
+                cautions.push(Caution::MissingResponses { model: model.clone(), responses: missing });
+            }
+        }
         if !lacks.is_empty() {
-            let why = lacks.iter().any(|pair| not_finite.contains(pair)).then_some(why);
-            return Some(Caution::SetAside {
+            cautions.push(Caution::SetAside {
                 model,
-                lacks: lacks.clone(),
-                why,
+                zero: lacks.iter().copied().filter(|pair| zero.contains(pair)).collect(),
+                why: if lacks.iter().any(|pair| not_finite.contains(pair)) { Some(why) } else { None },
+                lacks,
                 pinned: choice.pinned.as_ref() == Some(name),
             });
+        } else if !not_finite.is_empty() {
+            cautions.push(Caution::NotFinite { model, responses: not_finite, why });
         }
-        (!not_finite.is_empty()).then_some(Caution::NotFinite { model, responses: not_finite, why })
-    };
-    (0..responses.len())
-        .filter(|&index| !choice.rejected.contains(&condition.bundle(bundle)[index].name))
-        .filter_map(caution)
-        .collect()
+    }
+    cautions
 }

@@ -103,8 +103,29 @@ pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Ve
                 caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
             cautions.extend(of_bundle.into_iter().map(|caution| (condition.id(), caution)));
         }
+        let out_of_range = gains_out_of_range(condition, &responses, study.choice(condition.id()));
+        cautions.extend(out_of_range.map(|caution| (condition.id(), caution)));
     }
     Ok(cautions)
+}
+
+/// The gains that cannot be computed with, between the nominal physics model and the first kept identified model that shows some.
+fn gains_out_of_range(
+    condition: &Condition,
+    responses: &ConditionResponses,
+    choice: &ConditionChoice,
+) -> Option<Caution> {
+    let nominal = condition.nominal();
+    let physics = PolarResponse::of(&responses.bundle(BundleKind::Physics)[nominal]);
+    let identified = condition.bundle(BundleKind::Identified).iter().zip(responses.bundle(BundleKind::Identified));
+    for (model, response) in identified.filter(|(model, _)| !choice.identified.rejected.contains(&model.name)) {
+        let responses = GainOutOfRange::of_models(&physics, &PolarResponse::of(response));
+        if !responses.is_empty() {
+            let physics = condition.bundle(BundleKind::Physics)[nominal].name.clone();
+            return Some(Caution::GainsOutOfRange { physics, identified: model.name.clone(), responses });
+        }
+    }
+    None
 }
 
 /// Mismatch of a physics model and the identified representative, with the J it amounts to.
@@ -184,6 +205,17 @@ impl Comparison {
         let delta = Delta::of(&representative.mismatch, grid.omega());
         let undefined =
             delta.gain.map(|pair, gain| gain.is_none().then(|| why_undefined(&simulated, &reference, pair)));
+        let mut out_of_range = GainOutOfRange::of_models(&simulated.polar, &reference.polar);
+        // A gain may be out of range where coherence leaves it out.
+        out_of_range.retain(|of| delta.gain[of.pair].is_none());
+        if !out_of_range.is_empty() {
+            let name = |kind: BundleKind, model: usize| condition.bundle(kind)[model].name.clone();
+            cautions.push(Caution::GainsOutOfRange {
+                physics: name(BundleKind::Physics, physics.model),
+                identified: name(BundleKind::Identified, identified.model),
+                responses: out_of_range,
+            });
+        }
         cautions.extend(coherence_caution(flight, &reference, grid.len(), coherence));
         for (kind, model, compared) in
             [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]
@@ -231,15 +263,26 @@ impl Comparison {
 
 /// Why a response of two representatives has no G and no D.
 fn why_undefined(simulated: &Compared, reference: &Compared, pair: Pair) -> Undefined {
-    let both_have_it = simulated.has(pair) && reference.has(pair);
-    if simulated.nothing[pair] {
-        Undefined::NumericallyNothing(BundleKind::Physics)
-    } else if reference.nothing[pair] {
-        Undefined::NumericallyNothing(BundleKind::Identified)
-    } else if both_have_it && reference.left(pair) == Some(0) {
-        Undefined::NotCoherent
-    } else {
-        Undefined::ZeroOrNotFinite
+    for (bundle, compared) in [(BundleKind::Physics, simulated), (BundleKind::Identified, reference)] {
+        if compared.nothing[pair] {
+            return Undefined::NumericallyNothing(bundle);
+        }
+    }
+    for (bundle, compared) in [(BundleKind::Physics, simulated), (BundleKind::Identified, reference)] {
+        if let Some(absence) = compared.absence(pair) {
+            return match absence {
+                Absence::Zero => Undefined::Zero(bundle),
+                Absence::ZeroSomewhere => Undefined::ZeroSomewhere(bundle),
+                Absence::NotFinite => Undefined::NotFinite(bundle),
+            };
+        }
+    }
+    match GainOutOfRange::of_pair(&simulated.polar, &reference.polar, pair) {
+        Some(GainOutOfRange { power_of_ten, .. }) if reference.left(pair) != Some(0) => {
+            Undefined::GainOutOfRange(power_of_ten)
+        }
+        // Both have it, and no frequency of it counts.
+        _ => Undefined::NotCoherent,
     }
 }
 
@@ -265,9 +308,29 @@ fn coherence_caution(
 /// Difference of every response that two models have.
 pub(super) type Mismatches = PairTable<Option<Mismatch>>;
 
+/// Why a response has no magnitude in dB at every frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Absence {
+    Zero,
+    ZeroSomewhere,
+    NotFinite,
+}
+
+impl Absence {
+    /// Of a response that is zero, or not finite, at one frequency at least.
+    fn of(values: &[Complex<f64>]) -> Self {
+        let mut finite = values.iter().filter(|value| value.is_finite()).peekable();
+        if finite.peek().is_some() && finite.all(|value| value.norm() == 0.0) {
+            return Self::Zero;
+        }
+        if values.iter().all(|value| value.is_finite()) { Self::ZeroSomewhere } else { Self::NotFinite }
+    }
+}
+
 /// A model as it is compared: without the responses that are numerically nothing.
 pub(super) struct Compared {
     polar: PolarResponse,
+    absent: PairTable<Option<Absence>>,
     nothing: PairTable<bool>,
     /// Which frequencies count, where coherence says that.
     coherence_weights: Option<PairTable<CoherenceWeights>>,
@@ -281,12 +344,22 @@ impl Compared {
         (kind, model): (BundleKind, usize),
         (grid, coherence): (&FrequencyGrid, Option<f64>),
     ) -> Self {
-        let mut polar = PolarResponse::of(&responses.compared(kind, model));
+        let response = responses.compared(kind, model);
+        let mut polar = PolarResponse::of(&response);
+        let absent = polar.curves().map(|pair, curve| match curve {
+            Some(_) => None,
+            None => Some(Absence::of(response.curve(pair))),
+        });
         let nothing = polar.numerically_nothing();
         polar.clear(&nothing);
         let coherence = coherence.filter(|_| kind == BundleKind::Identified);
         let dynamics = &condition.bundle(kind)[model].dynamics;
-        Self { polar, nothing, coherence_weights: CoherenceWeights::of_model(dynamics, grid.omega(), coherence) }
+        Self {
+            polar,
+            absent,
+            nothing,
+            coherence_weights: CoherenceWeights::of_model(dynamics, grid.omega(), coherence),
+        }
     }
 
     /// What it differs from a reference in, response by response.
@@ -296,6 +369,11 @@ impl Compared {
 
     fn has(&self, pair: Pair) -> bool {
         self.polar.curves()[pair].is_some()
+    }
+
+    /// Why the model has no response as it is; none where it has one, be that numerically nothing.
+    fn absence(&self, pair: Pair) -> Option<Absence> {
+        self.absent[pair]
     }
 
     /// How many frequencies of a response count, where coherence says which do.

@@ -3,10 +3,13 @@
 
 use crate::correction::ABOVE_BAND;
 use crate::couplings::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift, relative_change_db};
-use crate::progress::{Shares, Untold};
+use crate::progress::{Portion, Shares};
 use crate::response::log_spaced;
 
 use super::*;
+
+/// The step that an assessment reports.
+const LEAVING_OUT: &str = "couplings without each condition";
 
 /// Frequencies of the singular values below the band, and from its lower end to ten times its top: 2 % apart over the example's band.
 const MARGIN_POINTS: [usize; 2] = [60, 300];
@@ -182,17 +185,18 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<Option<AssessedCouplings>, Cancelled> {
         let shares = Shares::new(progress);
-        let told = |share: f64| shares.advance(share, "couplings without each condition");
-        let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &Untold(progress))?;
-        told(0.1)?;
-        let with = self.analyze(&with_couplings(study, couplings), &Untold(progress))?;
-        told(0.1)?;
+        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let without = self.analyze(&with_couplings(study, CouplingCorrection::None), &portion)?;
+        portion.finish()?;
+        let portion = Portion::new(&shares, 0.1, LEAVING_OUT);
+        let with = self.analyze(&with_couplings(study, couplings), &portion)?;
+        portion.finish()?;
         let fitted = match &with.couplings {
             None => return Ok(None),
             Some(Err(error)) => return Ok(Some(Err(error.clone()))),
             Some(Ok(fitted)) => Arc::clone(fitted),
         };
-        let left_out = self.left_out(&with, (&without, &fitted), (progress, &shares))?;
+        let left_out = self.left_out(&with, (&without, &fitted), &shares)?;
         let settings = &study.settings;
         let grid = margin_grid(settings.band);
         let mut assessment = CouplingsAssessment {
@@ -211,7 +215,7 @@ impl Engine {
         let share = 0.2 / results.len().max(1) as f64;
         let looked_at = each(self.executor(), &results, |result| {
             let found = of_condition(&with.study, result, &grid, progress)?;
-            told(share)?;
+            shares.advance(share, LEAVING_OUT)?;
             Ok::<_, Cancelled>(found)
         });
         for (result, looked_at) in results.iter().zip(looked_at) {
@@ -230,7 +234,7 @@ impl Engine {
         &self,
         with: &Analysis,
         (without, fitted): (&Analysis, &FittedCouplings),
-        (progress, shares): (&dyn Progress, &Shares<'_>),
+        shares: &Shares<'_>,
     ) -> Result<Vec<LeftOutCondition>, Cancelled> {
         let ids: Vec<ConditionId> = fitted.problem.conditions.iter().map(|of| of.id).collect();
         if ids.len() < LEAST_CONDITIONS {
@@ -243,8 +247,9 @@ impl Engine {
                 return Ok(None);
             }
             let mut engine = self.fork(Box::new(Sequential)).with_proofs_within(SUBSTITUTION_PROOF);
-            let analysis = engine.analyze(&study, &Untold(progress))?;
-            shares.advance(share, "couplings without each condition")?;
+            let portion = Portion::new(shares, share, LEAVING_OUT);
+            let analysis = engine.analyze(&study, &portion)?;
+            portion.finish()?;
             Ok(LeftOutCondition::of(id, &analysis, without))
         };
         each(self.executor(), ids, of_condition).into_iter().filter_map(Result::transpose).collect()

@@ -237,7 +237,7 @@ fn fit_of(
     Ok(Some(fit))
 }
 
-/// Tells of the solves of a fit as steps of the analysis.
+/// Reports the progress of a fit as steps of the analysis.
 struct Solves<'a> {
     execution: &'a Execution<'a>,
     /// How many steps the fit is.
@@ -252,7 +252,9 @@ impl Progress for Solves<'_> {
 
     fn advanced(&self, done: usize, total: usize) {
         let told = self.steps * done / total.max(1);
-        self.execution.step(told - self.told.swap(told, Ordering::Relaxed).min(told));
+        // Several threads may report at once: never backwards.
+        let before = self.told.fetch_max(told, Ordering::Relaxed);
+        self.execution.step(told.saturating_sub(before));
     }
 }
 

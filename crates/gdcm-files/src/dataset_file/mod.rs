@@ -115,6 +115,11 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     Ok(draft.faults().into_iter().map(told).collect())
 }
 
+/// Whether a text has the structure of a dataset, as far as it goes.
+pub(super) fn check_dataset_text(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
+    FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
+}
+
 /// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use gdcm_core::correction::Channel;
-use gdcm_core::dataset::{Dataset, ModelId};
+use gdcm_core::dataset::{BundleKind, Dataset, ModelId};
 use gdcm_core::schedule::{ScheduleCaution, ScheduleKind};
-use gdcm_core::study::{Caution, ConditionAnalysis, ConditionFailure, Undefined};
+use gdcm_core::study::{
+    BundleModel, Caution, ConditionAnalysis, ConditionFailure, Execution, GainOutOfRange, Undefined, cautions_of_models,
+};
 use gdcm_files::{DatasetOrigin, load_dataset_bytes};
 use serde_json::json;
 
@@ -136,7 +138,7 @@ fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
     let why = Undefined::NumericallyNothing(BundleKind::Physics);
     assert!(found.cautions.contains(&Caution::HeldButUndefined { pair, why }));
     assert_eq!(found.comparison.undefined[pair], Some(why));
-    assert_eq!(found.comparison.undefined[Pair::new(1, 0)], Some(Undefined::ZeroOrNotFinite));
+    assert_eq!(found.comparison.undefined[Pair::new(1, 0)], Some(Undefined::Zero(BundleKind::Physics)));
 }
 
 #[test]
@@ -163,8 +165,99 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
     assert_eq!(found.comparison.undefined[Pair::new(1, 1)], Some(Undefined::NumericallyNothing(BundleKind::Physics)));
     let alone = only(&two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]), &[]);
     let found = &alone.condition(ONLY).unwrap().comparison;
-    assert_eq!(found.undefined[Pair::new(0, 0)], Some(Undefined::ZeroOrNotFinite));
+    assert_eq!(found.undefined[Pair::new(0, 0)], Some(Undefined::GainOutOfRange(60)));
     assert!(found.delta.gain[Pair::new(1, 1)].is_some());
+}
+
+/// The cautions that `check` has of the only condition of a file.
+fn checked(value: &Value) -> Vec<Caution> {
+    let cautions = cautions_of_models(&Study::new(dataset(value)), &Execution::sequential()).unwrap();
+    cautions.into_iter().map(|(_, caution)| caution).collect()
+}
+
+#[test]
+fn a_gain_beyond_what_is_computed_with_is_called_that() {
+    for (power, physics, identified) in [(74, 1.0, 1e74), (-74, 1e74, 1.0), (74, 1e-74, 1.0), (-74, 1.0, 1e-74)] {
+        let value = two_lags([[physics, 0.0], [0.0, 1.0]], [[identified, 0.0], [0.0, 0.9]]);
+        let pair = Pair::new(0, 0);
+        let analysis = only(&value, &[]);
+        let found = analysis.condition(ONLY).unwrap();
+        let why = found.comparison.undefined[pair].unwrap();
+        assert_eq!((why, why.code()), (Undefined::GainOutOfRange(power), "gain-out-of-range"));
+        let expected = Caution::GainsOutOfRange {
+            physics: "model".to_owned(),
+            identified: "model".to_owned(),
+            responses: vec![GainOutOfRange { pair, power_of_ten: power }],
+        };
+        assert!(found.cautions.contains(&expected), "{:?}", found.cautions);
+        assert_eq!(checked(&value), [expected]);
+        assert!(words(&analysis, found).concat().contains(&format!("1e{power}")));
+    }
+    // Of an analysis that has nothing else, and of gains that can be computed with.
+    let alone = only(&two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]), &[]);
+    let failure = alone.conditions[&ONLY].as_ref().unwrap_err().to_string();
+    assert!(failure.contains("about 1e-74 in I0 → O0, 1e-74 in I1 → O1"), "{failure}");
+    assert!(checked(&two_lags([[1e-24, 0.0], [0.0, 1.0]], [[1e24, 0.0], [0.0, 0.9]])).is_empty());
+}
+
+/// Two lags, identified as a response measured from 0.3 to 20 rad/s, of which the values of some responses are zero.
+fn with_zeros_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
+    let mut value = two_lags([[1.0, 0.1], [0.1, 1.0]], [[1.2, 0.1], [0.1, 0.9]]);
+    let omega: Vec<f64> = (0..50).map(|k| 0.3 * (20.0_f64 / 0.3).powf(f64::from(k) / 49.0)).collect();
+    let part = |of: fn(f64, f64) -> f64| -> Value {
+        let curve = |output: usize, input: usize| -> Vec<f64> {
+            let is_zero = zeros.contains(&[output, input]);
+            let lag = [1.0, 3.0][input];
+            omega.iter().map(|&omega| if is_zero { 0.0 } else { of(lag, omega) }).collect()
+        };
+        json!([[curve(0, 0), curve(0, 1)], [curve(1, 0), curve(1, 1)]])
+    };
+    let re = part(|lag, omega| lag / (lag * lag + omega * omega));
+    let im = part(|lag, omega| -omega / (lag * lag + omega * omega));
+    value["conditions"][0]["identified_models"][0] =
+        json!({"name": "measured", "frequency_response": {"omega_rad_s": omega, "re": re, "im": im}});
+    value["frequency_band"] = json!({"min": band[0], "max": band[1], "unit": "rad/s"});
+    value
+}
+
+#[test]
+fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() {
+    let model = BundleModel { bundle: BundleKind::Identified, name: "measured".to_owned() };
+    let responses = vec![Pair::new(0, 1), Pair::new(1, 1)];
+    // Inside the measured frequencies, and beyond them.
+    for (band, not_finite) in [([0.5, 12.0], vec![]), ([0.5, 30.0], vec![Pair::new(0, 0), Pair::new(1, 0)])] {
+        let value = with_zeros_measured(&[[0, 1], [1, 1]], band);
+        let mut cautions = checked(&value);
+        let missing = Caution::MissingResponses { model: model.clone(), responses: responses.clone() };
+        assert_eq!((cautions.remove(0), missing.code()), (missing.clone(), "response-missing"));
+        let beyond: Vec<Pair> = cautions
+            .iter()
+            .flat_map(|caution| match caution {
+                Caution::NotFinite { responses, .. } => responses.clone(),
+                other => panic!("{other:?}"),
+            })
+            .collect();
+        assert_eq!(beyond, not_finite, "{band:?}");
+    }
+    let value = with_zeros_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
+    let analysis = only(&value, &[]);
+    let found = analysis.condition(ONLY).unwrap();
+    assert_eq!(found.comparison.undefined[Pair::new(1, 1)], Some(Undefined::Zero(BundleKind::Identified)));
+    assert!(found.comparison.delta.gain[Pair::new(0, 0)].is_some());
+    let said = words(&analysis, found).concat();
+    assert!(said.contains("I1 → O0, I1 → O1") && !said.contains("rad/s only"), "{said}");
+}
+
+#[test]
+fn a_model_set_aside_for_zeros_is_not_told_to_be_measured_too_short() {
+    let mut value = with_zeros_measured(&[[1, 1]], [0.5, 12.0]);
+    let whole = with_zeros_measured(&[], [0.5, 12.0])["conditions"][0]["identified_models"][0].clone();
+    value["conditions"][0]["identified_models"].as_array_mut().unwrap().push(whole);
+    value["conditions"][0]["identified_models"][1]["name"] = json!("whole");
+    let (model, lacks) =
+        (BundleModel { bundle: BundleKind::Identified, name: "measured".to_owned() }, vec![Pair::new(1, 1)]);
+    let expected = Caution::SetAside { model, zero: lacks.clone(), lacks, why: None, pinned: false };
+    assert_eq!(checked(&value), [expected]);
 }
 
 #[test]

@@ -1,0 +1,95 @@
+//! A command that is written wrongly, told from a file.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::CommandFactory;
+use gdcm_core::message_text::{sanitized, shortened};
+
+use super::arguments::Arguments;
+use super::terminal::Failure;
+
+/// The failure of a command line whose first word is neither a command nor a file, and differs from a command by a letter or two; none
+/// of any other. The first of `arguments` is the program.
+pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
+    let word = arguments.iter().skip(1).find(|argument| !argument.to_string_lossy().starts_with('-'))?;
+    let word = word.to_str()?;
+    let names_a_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
+    if names_a_file {
+        return None;
+    }
+    let commands = Arguments::command();
+    let names: Vec<&str> =
+        commands.get_subcommands().flat_map(|command| command.get_name_and_visible_aliases()).collect();
+    let is_a_command = word == "help" || commands.find_subcommand(word).is_some();
+    if is_a_command {
+        return None;
+    }
+    let distances = names.into_iter().map(|name| (edit_distance(word, name), name));
+    let (distance, suggestion) = distances.min_by_key(|(distance, _)| *distance)?;
+    // Of a short word two letters are half of it: that is another word.
+    let most = if word.chars().count() < 5 { 1 } else { 2 };
+    if distance > most {
+        return None;
+    }
+    Some(Failure::UnknownCommand { found: shortened(&sanitized(word)), suggestion: suggestion.to_owned() })
+}
+
+/// The least number of letters to insert, delete or replace that makes one word the other: V. I. Levenshtein, "Binary codes capable of
+/// correcting deletions, insertions, and reversals", 1966.
+fn edit_distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    // The distances of the letters of `from` so far to each beginning of `to`.
+    let mut distances: Vec<usize> = (0..=to.len()).collect();
+    for (row, letter) in from.chars().enumerate() {
+        let mut diagonal = distances[0];
+        distances[0] = row + 1;
+        for column in 0..to.len() {
+            let replaced = diagonal + usize::from(letter != to[column]);
+            diagonal = distances[column + 1];
+            distances[column + 1] = replaced.min(diagonal + 1).min(distances[column] + 1);
+        }
+    }
+    distances[to.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn suggestion(words: &[&str]) -> Option<String> {
+        let arguments: Vec<OsString> = ["gdcm"].iter().chain(words).map(OsString::from).collect();
+        match misspelt_command(&arguments)? {
+            Failure::UnknownCommand { suggestion, .. } => Some(suggestion),
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn a_command_that_is_written_wrongly_is_told_from_a_file() {
+        for (word, command) in
+            [("analize", "analyze"), ("exprot", "export"), ("chek", "check"), ("Assemble", "assemble")]
+        {
+            assert_eq!(suggestion(&["--json", word, "x"]).as_deref(), Some(command), "{word}");
+        }
+        for words in [
+            &["analyze", "analize"][..],
+            &["analyse"],
+            &["help"],
+            &["./analize"],
+            &["analize.json"],
+            &["data"],
+            &["--version"],
+            &[],
+        ] {
+            assert_eq!(suggestion(words), None, "{words:?}");
+        }
+    }
+
+    #[test]
+    fn the_distance_counts_letters() {
+        for (from, to, distance) in [("", "abc", 3), ("kitten", "sitting", 3), ("same", "same", 0)] {
+            assert_eq!((edit_distance(from, to), edit_distance(to, from)), (distance, distance));
+        }
+    }
+}

@@ -123,10 +123,12 @@ pub struct VarianceComponent {
 const ROUNDING: f64 = 1e-9;
 
 impl VarianceComponent {
-    /// The mean square of some changes about the representative's figure (M13.1); none of none.
+    /// Computes the mean square of the changes from the representative's value (M13.1); `None` without changes.
     ///
     /// Not a variance about the mean, and never divided by the number of models: a further model does not make the trim flown
-    /// better known.
+    /// better known, and identified models share records. For independent identified models this is about twice the variance
+    /// of their errors. The surplus keeps the level of the bars while up to half of the error variance is common to all models
+    /// (measured in `docs/uncertainty.md`).
     pub fn of_changes(changes: &[f64]) -> Option<Self> {
         let degrees = changes.len() as f64;
         let beyond_rounding = changes.iter().filter(|change| change.abs() > ROUNDING);

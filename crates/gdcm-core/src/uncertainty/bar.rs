@@ -1,79 +1,78 @@
-//! The error bar of one value (M13.3): its settings, and the variances that it is made of; whether two conditions differ significantly
-//! (M13.4), and the distributions of Student, Fisher and chi-squared.
+//! Error bar of one value (M13.3) with its settings and variance components, the significance of differences between two conditions
+//! (M13.4), and quantiles of Student's, Fisher's and the chi-squared distribution.
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
 use super::Measurement;
 
-/// Why a part is what it is, where that is not the spread of the models.
+/// Source of the identification part of a bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum IdentificationSource {
     /// The spread of the identified models, with that of the other conditions (M13.2).
     Spread,
-    /// The coherence of the measured response, which says more than the spread.
+    /// The coherence of the measured response, where its error is larger than the spread.
     Coherence,
-    /// The band that the identified model carries, which says more than the spread.
+    /// The confidence band of the identified model, where it is wider than the spread.
     ModelBand,
 }
 
-/// What is known of how sure one figure is.
-///
-/// Of a gain the figure is its natural logarithm, of a delay \[s\].
+/// Uncertainty of one value: the natural logarithm of a gain, or a delay in s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
-    /// The figure itself, `q_0`.
+    /// Value with both representatives, `q_0`.
     pub value: f64,
-    /// What not knowing the trim flown makes, `s_phys`; none where no other physics model is kept.
+    /// Variance due to the unknown trim, `s_phys^2`; `None` where no other physics model is kept.
     pub trim: Option<VarianceComponent>,
-    /// What not knowing the flight's response better makes, `s_id`; none where nothing says it.
+    /// Variance due to the identification, `s_id^2`; `None` without a second identified model in any condition and without a
+    /// reported error.
     pub identification: Option<VarianceComponent>,
-    /// Where the identification part comes from.
+    /// Source of the identification part.
     pub source: IdentificationSource,
-    /// Swaps in which the figure does not exist.
+    /// Number of substitutions in which the value does not exist.
     pub left_out: usize,
-    /// Least and greatest value that the figure can have.
+    /// Smallest and largest admissible value.
     pub range: [f64; 2],
 }
 
 impl Bar {
-    /// `u^2 = s_phys^2 + s_id^2`.
+    /// Returns `u^2 = s_phys^2 + s_id^2`.
     pub fn variance(&self) -> f64 {
         self.parts().map(|part| part.variance).sum()
     }
 
-    /// `u`.
+    /// Returns the combined standard deviation `u`.
     pub fn deviation(&self) -> f64 {
         self.variance().sqrt()
     }
 
-    /// The parts that are known.
+    /// Iterates over the known variance components.
     pub fn parts(&self) -> impl Iterator<Item = VarianceComponent> + use<> {
         [self.trim, self.identification].into_iter().flatten()
     }
 
-    /// Degrees of freedom of `u`; none where the bundle has no spread.
+    /// Returns the degrees of freedom of `u`; `None` where the bundles have no spread.
     pub fn degrees_of_freedom(&self) -> Option<f64> {
         satterthwaite(self.parts())
     }
 
-    /// Half-width `h = t(max(nu, 1)) u` of the whole bar; none where there is no spread, or none is known.
+    /// Returns the half-width `h = t(max(nu, 1)) u` of the whole bar; `None` without a known spread.
     pub fn half_width(&self, level: f64) -> Option<f64> {
         self.degrees_of_freedom().map(|degrees| student_quantile(level, degrees) * self.deviation())
     }
 
-    /// Half-width of the inner bar, "for this physics model": `t(nu_id) s_id`.
+    /// Returns the half-width `t(nu_id) s_id` of the inner bar, which holds for the chosen physics model.
     pub fn inner_half_width(&self, level: f64) -> Option<f64> {
         let part = self.identification.filter(|part| part.variance > 0.0)?;
         Some(student_quantile(level, part.degrees_of_freedom) * part.variance.sqrt())
     }
 
-    /// The whole bar, cut to the values that the figure can have.
+    /// Returns the interval of the whole bar, clamped to the admissible values.
     pub fn interval(&self, level: f64) -> Option<[f64; 2]> {
         self.half_width(level).map(|half| self.about(half))
     }
 
-    /// The inner bar, cut likewise.
+    /// Returns the interval of the inner bar, clamped to the admissible values.
     pub fn inner_interval(&self, level: f64) -> Option<[f64; 2]> {
         self.inner_half_width(level).map(|half| self.about(half))
     }
@@ -83,13 +82,13 @@ impl Bar {
         [(self.value - half).clamp(least, greatest), (self.value + half).clamp(least, greatest)]
     }
 
-    /// Share of the trim in the variance, from 0 to 1; none where there is no spread.
+    /// Returns the share of the trim in the variance, from 0 to 1; `None` without spread.
     pub fn trim_share(&self) -> Option<f64> {
         let variance = self.variance();
         (variance > 0.0).then(|| self.trim.map_or(0.0, |part| part.variance) / variance)
     }
 
-    /// What the bar does not include, or why there is none, in words.
+    /// Describes missing parts, a missing spread, and a source other than the spread of the models.
     pub fn remarks(&self) -> Vec<&'static str> {
         let mut remarks = Vec::new();
         if self.trim.is_none() {
@@ -110,23 +109,25 @@ impl Bar {
     }
 }
 
-/// A variance with its degrees of freedom. Of a gain the variance is that of its natural logarithm, of a delay \[s^2\].
+/// A variance with its degrees of freedom: of the natural logarithm of a gain, or of a delay in s^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceComponent {
     /// The mean square.
     pub variance: f64,
-    /// Degrees of freedom, at least 1; infinite where it is taken as known.
+    /// Degrees of freedom, at least 1; infinite for a variance taken as known.
     pub degrees_of_freedom: f64,
 }
 
-/// Changes of an optimum that are no larger, in natural logarithms or \[s\], are rounding: identical models have no spread.
+/// Changes up to this size, in natural logarithms or s, are rounding errors of the solver and count as zero.
 const ROUNDING: f64 = 1e-9;
 
 impl VarianceComponent {
-    /// The mean square of some changes about the representative's figure (M13.1); none of none.
+    /// Computes the mean square of the changes from the representative's value (M13.1); `None` without changes.
     ///
     /// Not a variance about the mean, and never divided by the number of models: a further model does not make the trim flown
-    /// better known.
+    /// better known, and identified models share records. For independent identified models this is about twice the variance
+    /// of their errors. The surplus keeps the level of the bars while up to half of the error variance is common to all models
+    /// (measured in `docs/uncertainty.md`).
     pub fn of_changes(changes: &[f64]) -> Option<Self> {
         let degrees = changes.len() as f64;
         let beyond_rounding = changes.iter().filter(|change| change.abs() > ROUNDING);
@@ -134,18 +135,18 @@ impl VarianceComponent {
         (!changes.is_empty()).then(|| Self { variance: square / degrees, degrees_of_freedom: degrees })
     }
 
-    /// The same part, so many times as large in variance.
+    /// Multiplies the variance and keeps the degrees of freedom.
     pub fn scaled(self, factor: f64) -> Self {
         Self { variance: factor * self.variance, ..self }
     }
 }
 
-/// Degrees of freedom of a sum of parts, `u^4 / sum(s^4 / nu)`; none where all of them are zero.
+/// Computes the degrees of freedom `u^4 / sum(s^4 / nu)` of a sum of variances; `None` where all are zero.
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components", Biometrics Bulletin 2 (1946).
 pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Option<f64> {
     let parts: Vec<VarianceComponent> = parts.into_iter().filter(|part| part.variance > 0.0).collect();
-    // Beside the greatest: the squares of small variances underflow.
+    // Relative to the largest, because squares of small variances underflow.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let (mut sum, mut spread) = (0.0, 0.0);
     for part in &parts {
@@ -156,10 +157,10 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
     (!parts.is_empty()).then(|| sum * sum / spread)
 }
 
-/// The identification part of every condition, pooled (M13.2): `(n s_own^2 + d_0 s_pooled^2) / (n + d_0)` with
-/// `d_0 = min(prior, sum of the others' n)`. None where no condition has two identified models.
+/// Computes the pooled identification part of every condition (M13.2): `(n s_own^2 + d_0 s_pooled^2) / (n + d_0)` with
+/// `d_0 = min(prior, sum of the others' n)`. `None` where no condition has two identified models.
 ///
-/// `own` is the mean square of each condition, none where it has one model only, which then borrows all of it.
+/// `own` holds the mean square of each condition. A condition with one identified model has `None` and takes the pooled variance.
 pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Option<VarianceComponent>> {
     let count: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom).sum();
     let square: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom * part.variance).sum();
@@ -167,7 +168,7 @@ pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Opti
         let (n, variance) = own.map_or((0.0, 0.0), |own| (own.degrees_of_freedom, own.variance));
         let borrowed = prior_degrees.min(count - n);
         let degrees = n + borrowed;
-        // A prior of zero degrees leaves a condition with one model nothing to go by.
+        // Without borrowing, a condition with one model has no estimate.
         (count > 0.0 && degrees > 0.0).then(|| VarianceComponent {
             variance: (n * variance + borrowed * square / count) / degrees,
             degrees_of_freedom: degrees,
@@ -176,21 +177,21 @@ pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Opti
     own.iter().map(of_condition).collect()
 }
 
-/// How bars are made; no gain and no delay depends on it.
+/// Settings of the error bars; no gain and no delay depends on them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UncertaintySettings {
-    /// Level `L` of every bar, interval and test.
+    /// Confidence level `L` of every bar, interval and test.
     pub level: f64,
-    /// Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the
-    /// condition alone.
+    /// Largest number of degrees of freedom that a condition's identification part borrows from the other conditions; 0 uses
+    /// the condition alone.
     pub prior_degrees: f64,
-    /// Number of independent averages of measured responses that do not say it; none: their coherence is not used.
+    /// Number of independent averages of measured responses whose files do not give it; without it their coherence is not used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub averages: Option<f64>,
-    /// Length of the windows \[s\] of measured responses that do not say it.
+    /// Window length in s of measured responses whose files do not give it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_s: Option<f64>,
-    /// Whether those windows overlap by half, which makes `C_epsilon` the root of 0.55 in place of 1.
+    /// Whether those windows overlap by half: `C_epsilon` is then `sqrt(0.55)` instead of 1.
     #[serde(default)]
     pub half_overlap: bool,
 }
@@ -202,7 +203,7 @@ impl Default for UncertaintySettings {
 }
 
 impl UncertaintySettings {
-    /// How a response was measured that says so much of it itself; none where nobody says the number of averages.
+    /// Combines the data of a measured response with these defaults; `None` without a number of averages.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
         let averages = averages.or(self.averages).filter(|averages| *averages > 0.0)?;
         let window_s = window_s.or(self.window_s).filter(|window_s| *window_s > 0.0);
@@ -211,19 +212,19 @@ impl UncertaintySettings {
     }
 }
 
-/// The difference of one figure between two conditions, beside what their bundles explain.
+/// Difference of one value between two conditions, with the standard deviation expected from both bars.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
     /// `delta = q_c - q_c'`.
     pub delta: f64,
-    /// `u_delta`, from the parts of both.
+    /// Expected standard deviation `u_delta`, from the parts of both bars.
     pub deviation: f64,
-    /// Degrees of freedom; none where neither has a spread.
+    /// Degrees of freedom; `None` where neither condition has a spread.
     pub degrees_of_freedom: Option<f64>,
 }
 
 impl Difference {
-    /// The difference of two figures of two conditions.
+    /// Computes the difference of the values of two bars.
     pub fn of(first: &Bar, second: &Bar) -> Self {
         let deviation = (first.variance() + second.variance()).sqrt();
         Self {
@@ -233,18 +234,18 @@ impl Difference {
         }
     }
 
-    /// `|delta| / u_delta`: multiple of what is expected; none where they have no spread.
+    /// Returns `|delta| / u_delta`, the multiple of the expected difference; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom.map(|_| self.delta.abs() / self.deviation)
     }
 
-    /// How likely so great a ratio is where there is no difference.
+    /// Returns the probability of a ratio this large without a true difference.
     pub fn p(&self) -> Option<f64> {
         Some(student_two_sided(self.ratio()?, self.degrees_of_freedom?))
     }
 }
 
-/// Holm's correction of probabilities that are looked at together, in their order.
+/// Applies Holm's correction for multiple tests; the result is in the order of the argument.
 ///
 /// S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979).
 pub fn holm(probabilities: &[f64]) -> Vec<f64> {
@@ -259,16 +260,16 @@ pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Degrees of freedom from which Student's distribution is taken for the normal one: they differ by 2e-8 there.
+/// Degrees of freedom above which the normal distribution replaces Student's: they differ by 2e-8 there.
 const NORMAL_FROM: f64 = 1e8;
 
-/// Degrees of freedom from which Student's quantile is expanded about the normal one: four terms leave 1e-12 there, and the inverse of
-/// the incomplete beta function does not end for some that are larger.
+/// Degrees of freedom above which Student's quantile is expanded about the normal one. Four terms have an error of 1e-12 there, and
+/// the inverse of the incomplete beta function does not converge for some larger values.
 const EXPANDED_FROM: f64 = 1e3;
 
-/// Student's quantile `t(nu)` at `(1 + level) / 2`, `nu` any number from 1 up; the normal one where it is infinite.
+/// Computes Student's quantile `t(nu)` at `(1 + level) / 2` for any real `nu`, at least 1; the normal quantile for infinite `nu`.
 ///
-/// From a thousand degrees on by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
+/// Above a thousand degrees by M. Abramowitz, I. A. Stegun, "Handbook of Mathematical Functions", 26.7.5.
 pub fn student_quantile(level: f64, degrees: f64) -> f64 {
     let p = 0.5 * (1.0 + level);
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
@@ -288,7 +289,7 @@ fn expanded(z: f64, degrees: f64) -> f64 {
     z * terms.iter().rev().fold(0.0, |sum, term| (sum + term) / degrees) + z
 }
 
-/// How likely a ratio this large or larger, of either sign, is where there is nothing: `2 (1 - T_nu(|ratio|))`.
+/// Computes the two-sided probability `2 (1 - T_nu(|ratio|))` of Student's distribution.
 pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
     match StudentsT::new(0.0, 1.0, degrees.max(1.0)) {
         Ok(student) if degrees < NORMAL_FROM => 2.0 * student.sf(ratio.abs()),
@@ -296,12 +297,12 @@ pub fn student_two_sided(ratio: f64, degrees: f64) -> f64 {
     }
 }
 
-/// How likely a ratio of variances this large or larger is where both are one: `1 - F_(above, below)(ratio)`.
+/// Computes the upper tail `1 - F_(above, below)(ratio)` of Fisher's distribution, for the ratio of two equal variances.
 pub fn fisher_upper(ratio: f64, above: f64, below: f64) -> Option<f64> {
     Some(FisherSnedecor::new(above, below).ok()?.sf(ratio))
 }
 
-/// Quantile of chi squared at `p`.
+/// Computes the chi-squared quantile at `p`.
 pub fn chi_squared_quantile(p: f64, degrees: f64) -> Option<f64> {
     Some(ChiSquared::new(degrees).ok()?.inverse_cdf(p))
 }

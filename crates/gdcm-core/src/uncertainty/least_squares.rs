@@ -1,5 +1,5 @@
-//! Least squares of a few conditions: what the scatter of one figure about them is made of (M13.5), the bands of a schedule of `ln k`
-//! that they give (M13.6), and whether a second variable says something of the gains that airspeed does not (M13.7).
+//! Least squares over the conditions: split of the scatter about a fit (M13.5), bands of a schedule of `ln k` (M13.6), and the test
+//! whether the schedule needs a second variable beside airspeed (M13.7).
 
 use std::sync::Arc;
 
@@ -9,31 +9,31 @@ use super::{
     Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile, student_two_sided,
 };
 
-/// A column of which less than this is left beside the others is a combination of them.
+/// A column is linearly dependent if less than this fraction of its norm is orthogonal to the columns before it.
 const DEPENDENT: f64 = 1e-9;
 
-/// Columns of a design at most: a table over more airspeeds has neither a split nor bands.
+/// Largest number of columns of a design; a table over more airspeeds has neither a split nor bands.
 pub const MOST_COLUMNS: usize = 200;
 
-/// A design matrix `X` of full column rank, n conditions by r columns, as `Q R`.
+/// Design matrix `X` with full column rank, n conditions by r columns, stored as `Q R`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     q: DMatrix<f64>,
     r: DMatrix<f64>,
 }
 
-/// What least squares leave of one figure of each condition.
+/// Least-squares fit to one value per condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Coefficient of each column.
+    /// Coefficients, by column.
     pub coefficients: Vec<f64>,
-    /// Residual of each condition.
+    /// Residuals, by condition.
     pub residuals: Vec<f64>,
 }
 
 impl Design {
-    /// The design with these rows, one for each condition; none where a column is a combination of the others, where there are
-    /// fewer rows than columns, or none, or more than [`MOST_COLUMNS`].
+    /// Factorises the design with one row per condition. `None` where the columns are linearly dependent, outnumber the rows,
+    /// are missing, or are more than [`MOST_COLUMNS`].
     pub fn new(rows: &[Vec<f64>]) -> Option<Self> {
         let columns = rows.first()?.len();
         if rows.len() < columns || columns == 0 || columns > MOST_COLUMNS {
@@ -47,40 +47,40 @@ impl Design {
         (!depends).then_some(Self { q, r })
     }
 
-    /// Number of conditions, n.
+    /// Returns the number of conditions, n.
     pub fn conditions(&self) -> usize {
         self.q.nrows()
     }
 
-    /// Number of columns, r.
+    /// Returns the number of columns, r.
     pub fn rank(&self) -> usize {
         self.q.ncols()
     }
 
-    /// Degrees of freedom of the residuals, `f = n - r`.
+    /// Returns the degrees of freedom of the residuals, `f = n - r`.
     pub fn freedom(&self) -> usize {
         self.conditions() - self.rank()
     }
 
-    /// Hat value `h_c` of each condition: how much of its own figure the fit follows.
+    /// Returns the hat value `h_c` of each condition: derivative of its fitted value by its own value.
     pub fn hat_values(&self) -> Vec<f64> {
         (0..self.conditions()).map(|row| self.q.row(row).norm_squared().min(1.0)).collect()
     }
 
-    /// `x' (X'X)^-1 x` of a row that need not be one of the conditions'.
+    /// Computes `x' (X'X)^-1 x` for any row `x`.
     pub fn leverage(&self, row: &[f64]) -> f64 {
         let row = DVector::from_column_slice(row);
         self.r.transpose().solve_lower_triangular(&row).map_or(f64::NAN, |solved| solved.norm_squared())
     }
 
-    /// `[(X'X)^-1]` of the last column.
+    /// Returns the last diagonal entry of `(X'X)^-1`.
     pub fn last_variance(&self) -> f64 {
         let mut last = vec![0.0; self.rank()];
         last[self.rank() - 1] = 1.0;
         self.leverage(&last)
     }
 
-    /// The fit to one figure of each condition.
+    /// Fits one value per condition.
     pub fn fit(&self, figures: &[f64]) -> Fit {
         let figures = DVector::from_column_slice(figures);
         let projected = self.q.transpose() * &figures;
@@ -89,7 +89,7 @@ impl Design {
         Fit { coefficients: coefficients.iter().copied().collect(), residuals: residuals.iter().copied().collect() }
     }
 
-    /// Leave-one-condition-out error `e_c / (1 - h_c)` of each condition; none where the fit goes through it whatever it is.
+    /// Computes the leave-one-out error `e_c / (1 - h_c)` of each condition; `None` where the fit interpolates it, `h_c = 1`.
     pub fn left_out_errors(&self, figures: &[f64]) -> Vec<Option<f64>> {
         let residuals = self.fit(figures).residuals;
         let hats = self.hat_values();
@@ -98,16 +98,16 @@ impl Design {
     }
 }
 
-/// Half-widths of the two bands about a scheduled `ln k` at one place.
+/// Half-widths of the two bands about a scheduled `ln k` at one airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandWidths {
-    /// Of the schedule itself.
+    /// Confidence band of the schedule.
     pub confidence: f64,
-    /// Of another condition's figure.
+    /// Band for the value of a further condition.
     pub scatter: f64,
 }
 
-/// The bands of one figure's schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
+/// Bands of a schedule: `t(n - r) S' sqrt(h)` and `t(n - r) S' sqrt(1 + h)`, `S'^2 = max(S^2, B)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBand {
     design: Arc<Design>,
@@ -116,36 +116,36 @@ pub struct ScheduleBand {
 }
 
 impl ScheduleBand {
-    /// The bands about the fit whose scatter is split so.
+    /// Computes the bands from the design and the split of the scatter about its fit.
     pub fn of(design: &Arc<Design>, split: &VarianceDecomposition, level: f64) -> Self {
         let deviation = split.scatter.max(split.explained()).sqrt();
         Self { design: Arc::clone(design), half: student_quantile(level, split.freedom as f64) * deviation }
     }
 
-    /// The half-widths at the place that has this row of the design.
+    /// Returns the half-widths for one row of the design.
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
         BandWidths { confidence: self.half * h.sqrt(), scatter: self.half * (1.0 + h).sqrt() }
     }
 }
 
-/// The scatter of one figure about a fit, split into what the bundles make of it and the rest.
+/// Scatter of one value about a fit, split into the parts expected from the bundles and the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VarianceDecomposition {
     /// Degrees of freedom of the scatter, `f = n - r`.
     pub freedom: usize,
-    /// `S^2 = sum e^2 / f`.
+    /// Residual variance `S^2 = sum e^2 / f`.
     pub scatter: f64,
-    /// `B_phys`, expected from not knowing the trims.
+    /// `B_phys`, expected from the unknown trims.
     pub trim: f64,
     /// `B_id`, expected from the identification.
     pub identification: f64,
-    /// Degrees of freedom of `B`; none where the bundles have no spread.
+    /// Degrees of freedom of `B`; `None` where the bundles have no spread.
     pub degrees_of_freedom: Option<f64>,
 }
 
 impl VarianceDecomposition {
-    /// The split of these conditions' figures about the fit of `design`; none where it leaves no degrees of freedom.
+    /// Splits the scatter of the values about the fit of `design`; `None` without degrees of freedom.
     pub fn of(design: &Design, bars: &[Bar]) -> Option<Self> {
         let freedom = design.freedom();
         if freedom == 0 || bars.len() != design.conditions() {
@@ -170,33 +170,33 @@ impl VarianceDecomposition {
         })
     }
 
-    /// `B = B_phys + B_id`.
+    /// Returns `B = B_phys + B_id`.
     pub fn explained(&self) -> f64 {
         self.trim + self.identification
     }
 
-    /// `rest^2 = max(0, S^2 - B)`: what neither bundle makes.
+    /// Returns `rest^2 = max(0, S^2 - B)`, the variance that neither bundle explains.
     pub fn unexplained(&self) -> f64 {
         (self.scatter - self.explained()).max(0.0)
     }
 
-    /// Shares of trim, identification and rest in `max(S^2, B)`; none where there is neither scatter nor spread.
+    /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
         (whole > 0.0).then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
     }
 
-    /// `sqrt(F)`, `F = S^2 / B`: multiple of what is expected; none where they have no spread.
+    /// Returns `sqrt(S^2 / B)`, the multiple of the expected scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
         self.degrees_of_freedom.map(|_| (self.scatter / self.explained()).sqrt())
     }
 
-    /// How likely so great a scatter is where the bundles explain all of it.
+    /// Returns the probability of a scatter this large if the bundles explain all of it.
     pub fn p(&self) -> Option<f64> {
         fisher_upper(self.scatter / self.explained(), self.freedom as f64, self.degrees_of_freedom?)
     }
 
-    /// Interval of the rest, as a standard deviation: `sqrt(max(0, f S^2 / chi^2_f(p) - B))` at `p = (1 +- level) / 2`.
+    /// Returns the confidence interval of the rest, as a standard deviation: `sqrt(max(0, f S^2 / chi^2_f(p) - B))` at `p = (1 +- level) / 2`.
     pub fn unexplained_interval(&self, level: f64) -> Option<[f64; 2]> {
         let f = self.freedom as f64;
         let end = |p: f64| {
@@ -207,36 +207,36 @@ impl VarianceDecomposition {
     }
 }
 
-/// The effect of a second variable on one figure, beside the schedule with airspeed.
+/// Effect of a second variable on one value, in addition to the schedule with airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVariableEffect {
-    /// From the lowest to the highest value, `2 gamma`.
+    /// Change from the lowest to the highest value of the variable, `2 gamma`.
     pub effect: f64,
-    /// Half-width `2 t se` of its interval: an effect smaller than that could not have been seen.
+    /// Half-width `2 t se` of its interval; smaller effects are not detectable.
     pub visible: f64,
-    /// How likely so great an effect is where there is none.
+    /// Probability of an effect this large without a true effect.
     pub p: f64,
-    /// Leave-one-condition-out error, rms over the conditions, without the variable; none where no condition can be left out.
+    /// Rms leave-one-out error without the variable; `None` where no condition can be left out.
     pub left_out_without: Option<f64>,
-    /// The same with it.
+    /// Rms leave-one-out error with the variable.
     pub left_out_with: Option<f64>,
 }
 
-/// Why there is no effect to tell.
+/// Reason why the effect of a second variable is unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SecondVariableError {
-    /// A condition does not say it, or all say the same.
+    /// A condition has no value of the variable, or all values are equal.
     #[error("the conditions do not carry two values of it")]
     NotVaried,
-    /// It is a function of airspeed in these conditions.
+    /// The variable is a function of airspeed in these conditions.
     #[error("its effect and that of airspeed cannot be told apart")]
     NotToldApart,
-    /// As many coefficients as conditions.
+    /// The fit has too few degrees of freedom.
     #[error("there are too few conditions to see it beside the airspeed")]
     TooFewConditions,
 }
 
-/// The values scaled to -1 to 1; none where there are not two.
+/// Scales values linearly to the range from -1 to 1; `None` where all are equal.
 pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -245,7 +245,7 @@ pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
         .then(|| values.iter().map(|value| (2.0 * value - least - greatest) / width).collect())
 }
 
-/// The columns of a schedule without and with a second variable.
+/// Designs of a schedule without and with a second variable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableDesign {
     without: Design,
@@ -253,10 +253,10 @@ pub struct SecondVariableDesign {
 }
 
 impl SecondVariableDesign {
-    /// `values`, one for each condition, beside the columns of `rows`.
+    /// Appends `values`, one per condition, to the columns of `rows`.
     ///
     /// # Errors
-    /// [`SecondVariableError`] where their effect cannot be told.
+    /// [`SecondVariableError`] where the effect cannot be estimated.
     pub fn of(rows: &[Vec<f64>], values: &[f64]) -> Result<Self, SecondVariableError> {
         let scaled = scaled(values).ok_or(SecondVariableError::NotVaried)?;
         let extended: Vec<Vec<f64>> =
@@ -269,7 +269,7 @@ impl SecondVariableDesign {
         Ok(Self { without, with })
     }
 
-    /// The effect on these figures, one for each condition.
+    /// Estimates the effect on one value per condition.
     pub fn effect(&self, figures: &[f64], level: f64) -> SecondVariableEffect {
         let Self { without, with } = self;
         let fit = with.fit(figures);
@@ -277,7 +277,7 @@ impl SecondVariableDesign {
         let variance = fit.residuals.iter().map(|residual| residual * residual).sum::<f64>() / freedom;
         let error = (variance * with.last_variance()).sqrt();
         let coefficient = fit.coefficients.last().copied().unwrap_or_default();
-        // An exact fit leaves nothing that chance could have made.
+        // An exact fit without effect would give 0/0.
         let ratio = if coefficient == 0.0 { 0.0 } else { coefficient / error };
         let errors = (without.left_out_errors(figures), with.left_out_errors(figures));
         let both: Vec<(f64, f64)> = errors.0.iter().zip(&errors.1).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
@@ -296,10 +296,10 @@ impl SecondVariableDesign {
 }
 
 impl SecondVariableEffect {
-    /// Whether the schedule needs the variable: improbable by chance after Holm's correction, and it foresees a condition that
-    /// is left out better by 10 % or more.
+    /// Decides whether the schedule needs the variable: the effect is significant after Holm's correction, and the rms leave-one-out
+    /// error falls by 10 % or more.
     pub fn is_needed(&self, p_holm: f64, level: f64) -> bool {
-        /// What is left of the leave-one-condition-out error, at most.
+        /// Largest ratio of the leave-one-out errors with and without the variable.
         const LEFT: f64 = 0.9;
         let foresees = self.left_out_without.zip(self.left_out_with);
         p_holm < 1.0 - level && foresees.is_some_and(|(without, with)| with <= LEFT * without)

@@ -1,5 +1,5 @@
-//! How sure each number is (M13): bars, differences of conditions, what the scatter is made of, bands of a schedule, and whether it
-//! needs a second variable.
+//! Uncertainty of the results (M13): error bars, differences between conditions, split of the scatter, bands of a schedule, and the
+//! test for a second variable.
 //!
 //! ```text
 //!  1  for each condition c: q_0 <- the analysis with the representatives (a^, b^)

@@ -1,5 +1,5 @@
-//! What substituting the models of a condition does to its values, the bars that all conditions give, and the error that the
-//! coherence of a measurement tells (M13.2).
+//! Changes of a condition's values when its models are substituted (M13.1), the error bars of all conditions, and the error of a
+//! measured response from its coherence (M13.2).
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -10,19 +10,19 @@ use crate::correction::Channel;
 use crate::dataset::Pair;
 use crate::response::median;
 
-/// One figure of each kind, where it exists.
+/// Every scalar of a condition; `None` where it does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
 
-/// What the flight's response is known by, besides the spread of several models of it.
+/// Error that an identified model or a measured response reports about itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReportedUncertainty {
-    /// Its variance with its degrees of freedom.
+    /// Variance with its degrees of freedom.
     pub part: VarianceComponent,
-    /// Who says it.
+    /// Coherence or confidence band.
     pub source: IdentificationSource,
 }
 
-/// The mean squares of one figure's changes.
+/// Mean squares of the changes of one scalar.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Changes {
     trim: Option<VarianceComponent>,
@@ -30,15 +30,15 @@ struct Changes {
     left_out: usize,
 }
 
-/// How the figures of one condition change when other models of its bundles stand in for the representatives (M13.1).
+/// Changes of the scalars of one condition when other models of its bundles replace the representatives (M13.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSpread {
     changes: ScalarTable<Changes>,
 }
 
 impl ConditionSpread {
-    /// The spread about the figures of the representatives: `trim` has the figures with each other physics model kept, `own` those
-    /// with each other identified model kept; none where such a pair could not be analysed.
+    /// Computes the mean squares about the scalars of the representatives. `trim` has an entry for each other kept physics model,
+    /// `own` for each other kept identified model; `None` where the analysis of that pair failed.
     pub fn of(representatives: &Figures, trim: &[Option<&Figures>], own: &[Option<&Figures>]) -> Self {
         let changes = representatives.map(|scalar, base| {
             let Some(base) = base else { return Changes::default() };
@@ -57,21 +57,21 @@ impl ConditionSpread {
     }
 }
 
-/// Everything about one condition that its bars are made of.
+/// Input of the bars of one condition.
 #[derive(Clone, Debug)]
 pub struct BarSource<'a> {
-    /// The figures themselves.
+    /// Scalars with both representatives.
     pub figures: Figures,
-    /// How they change with the models.
+    /// Their changes under substitution.
     pub spread: &'a ConditionSpread,
-    /// Errors that the identified representative tells of itself.
+    /// Errors reported by the identified representative itself.
     pub told: ScalarTable<Option<ReportedUncertainty>>,
-    /// Least and greatest delay of a channel \[s\].
+    /// Lower and upper bound of a channel delay in s.
     pub delay_bounds_s: [f64; 2],
 }
 
-/// The bars of every condition of an analysis (M13.2, M13.3), the identification part of each figure pooled over them all. None
-/// where a figure does not exist.
+/// Computes the bars of all conditions of an analysis (M13.2, M13.3). The identification part of each scalar is pooled over the
+/// conditions. A scalar that does not exist has no bar.
 pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
     let Some(first) = conditions.first() else { return Vec::new() };
     let identification = first.figures.map(|scalar, _| {
@@ -100,14 +100,14 @@ pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable
 }
 
 impl ReportedUncertainty {
-    /// Whether it takes the place of the spread: where it is the larger. Models that each leave one record out spread less than any of
-    /// them errs, by about the root of the number of records (Efron's jackknife); the band that they carry does not.
+    /// Whether the reported error replaces the spread, because it is larger. Models that each leave one record out spread less than
+    /// each of them errs, by about the root of the number of records (Efron's jackknife); their bands do not have this defect.
     fn replaces(&self, spread: Option<VarianceComponent>) -> bool {
         spread.is_none_or(|spread| self.part.variance > spread.variance)
     }
 }
 
-/// One figure of a condition's analysis, `q` of M13.
+/// Scalar result of the analysis of a condition, `q` of M13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Scalar {
     /// `ln G` of a response.
@@ -125,28 +125,28 @@ pub enum Scalar {
 }
 
 impl Scalar {
-    /// Whether it is a time; otherwise it is the natural logarithm of a gain.
+    /// Whether the scalar is a time in s; otherwise it is the natural logarithm of a gain.
     pub fn is_delay(self) -> bool {
         matches!(self, Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_))
     }
 }
 
-/// A table with one entry for each figure of a condition with `p` outputs and `m` inputs.
+/// Table with one entry for each scalar of a condition with `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 
 impl<T> ScalarTable<T> {
-    /// A table of what `entry` says of each scalar of p outputs and m inputs.
+    /// Builds the table by calling `entry` for each scalar.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Scalar) -> T) -> Self {
         Self(scalars(outputs, inputs).map(|scalar| (scalar, entry(scalar))).collect())
     }
 
-    /// Every scalar with its entry.
+    /// Iterates over the scalars with their entries.
     pub fn iter(&self) -> impl Iterator<Item = (Scalar, &T)> {
         self.0.iter().map(|(scalar, entry)| (*scalar, entry))
     }
 
-    /// The table of what `f` makes of each entry.
+    /// Applies `f` to each entry.
     pub fn map<U>(&self, mut f: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
         ScalarTable(self.iter().map(|(scalar, entry)| (scalar, f(scalar, entry))).collect())
     }
@@ -160,7 +160,7 @@ impl<T> Index<Scalar> for ScalarTable<T> {
     }
 }
 
-/// Every figure, in the order of the entries.
+/// Iterates over all scalars of a condition.
 fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
     let of_pair: [fn(Pair) -> Scalar; 4] = [Scalar::Gain, Scalar::Delay, Scalar::BandDelay, Scalar::NetGain];
     let of_channel: [fn(Channel) -> Scalar; 2] = [Scalar::ChannelGain, Scalar::ChannelDelay];
@@ -171,40 +171,40 @@ fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
     of_pair.into_iter().flat_map(pairs).chain(of_channel.into_iter().flat_map(channels))
 }
 
-/// How a response was measured.
+/// Data of a measured response for the Bendat-Piersol error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Number of independent averages, `n_d`.
     pub averages: f64,
-    /// Length of the windows \[s\], `T_w`; none where it is not known: the whole band then has one error.
+    /// Window length `T_w` in s. Without it all frequencies of the band share one error.
     pub window_s: Option<f64>,
-    /// `C_epsilon`: 1, or the root of 0.55 for windows that overlap by half.
+    /// `C_epsilon`: 1, or `sqrt(0.55)` for windows that overlap by half.
     pub factor: f64,
 }
 
-/// Standard deviations of ln G and of D \[s\] that coherence tells.
+/// Standard deviations of `ln G` and D from the coherence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoherenceError {
-    /// Of ln G.
+    /// Standard deviation of `ln G`.
     pub ln_gain: f64,
-    /// Of D \[s\].
+    /// Standard deviation of D in s.
     pub delay_s: f64,
 }
 
 impl Measurement {
-    /// Degrees of freedom of an error that coherence tells, `2 n_d`.
+    /// Returns the degrees of freedom of the error, `2 n_d`.
     pub fn degrees_of_freedom(&self) -> f64 {
         2.0 * self.averages
     }
 
-    /// `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`: standard deviation of `ln |H|` and, in rad, of `arg H`.
+    /// Computes `epsilon = C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`: standard deviation of `ln |H|` and, in rad, of `arg H`.
     ///
     /// J. S. Bendat and A. G. Piersol, *Random Data*, 4th ed. (2010), section 9.
     pub fn deviation(&self, coherence: f64) -> f64 {
         self.factor * ((1.0 - coherence) / (coherence * 2.0 * self.averages)).sqrt()
     }
 
-    /// `kappa = sqrt(min(1, (pi/2) sum f_j^2))` with `f_j` the share of the frequencies \[rad/s\] with
+    /// Computes `kappa = sqrt(min(1, (pi/2) sum f_j^2))` with `f_j` the share of the frequencies \[rad/s\] with
     /// `floor(omega T_w / (4 pi)) = j`: errors of frequencies closer than `4 pi / T_w` are one error.
     fn averaging(&self, omega: &[f64]) -> f64 {
         let Some(window_s) = self.window_s else { return 1.0 };
@@ -213,8 +213,8 @@ impl Measurement {
         (0.5 * PI * shares.map(|share| share * share).sum::<f64>()).min(1.0).sqrt()
     }
 
-    /// The error over a band of `omega` \[rad/s\], rising, at which the response has these coherences; frequencies with less than
-    /// `threshold`, or none at all, are left out. None where none is left.
+    /// Computes the error over a band from the coherence at ascending frequencies `omega` in rad/s. Frequencies with a coherence of
+    /// zero or below `threshold` are left out; `None` where no frequency remains.
     pub fn error(&self, omega: &[f64], coherence: &[f64], threshold: f64) -> Option<CoherenceError> {
         let is_measured = |coherence: f64| coherence > 0.0 && coherence >= threshold;
         let measured = || omega.iter().zip(coherence).filter(|(_, coherence)| is_measured(**coherence));

@@ -12,6 +12,7 @@ use serde_json::Value;
 mod across;
 mod adopted_models;
 mod assessment;
+mod bar_coverage;
 mod coherence;
 mod derivations;
 mod edges;

@@ -35,16 +35,16 @@ fn assert_near(what: &str, found: f64, reference: &Value, tolerance: f64) {
     assert!((found - reference).abs() <= tolerance, "{what}: found {found}, reference {reference}");
 }
 
-fn study_of(dataset: &Value) -> Study {
+pub(super) fn study_of(dataset: &Value) -> Study {
     let text = serde_json::to_vec(dataset).unwrap();
     Study::new(load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample).unwrap().dataset)
 }
 
-fn set(study: &mut Study, edit: Edit) {
+pub(super) fn set(study: &mut Study, edit: Edit) {
     study.apply(&edit).unwrap();
 }
 
-fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
+pub(super) fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, study);
     let uncertainty = engine.uncertainty(&analysis, &Unobserved).unwrap();
@@ -404,7 +404,7 @@ fn a_model_that_stands_twice_does_not_narrow_a_bar() {
 }
 
 /// Normal deviates from a seed (xorshift, Box and Muller).
-fn normal(state: &mut u64) -> f64 {
+pub(super) fn normal(state: &mut u64) -> f64 {
     let mut uniform = || {
         *state ^= *state << 13;
         *state ^= *state >> 7;

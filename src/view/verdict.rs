@@ -24,6 +24,8 @@ pub struct Verdict {
     pub note: String,
     /// What has to be known before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<String>,
+    /// How many poles of kept physics models the couplings that are used make unstable within the band, in all conditions.
+    pub unstable_in_band: usize,
     /// How many sentences the list of reasons has.
     pub reasons: usize,
 }
@@ -90,6 +92,7 @@ impl Verdict {
             steps,
             note: String::new(),
             caution: None,
+            unstable_in_band: 0,
             reasons: 0,
         };
         match state.outcome() {
@@ -105,12 +108,21 @@ impl Verdict {
         let reasons = super::remarks_shown(state, shown).len();
         let (steps, note) = steps(state, shown);
         let caution = caution(state, shown);
-        Self { condition: shown.condition.id(), rows: rows(state, shown), steps, note, caution, reasons }
+        let unstable_in_band = unstable_in_band(state);
+        Self {
+            condition: shown.condition.id(),
+            rows: rows(state, shown),
+            steps,
+            note,
+            caution,
+            unstable_in_band,
+            reasons,
+        }
     }
 
-    /// Whether gains and phases are met.
+    /// Whether gains and phases are met, and no pole within the band became unstable for it.
     pub fn is_met(&self) -> bool {
-        self.rows.iter().all(|row| row.is_met)
+        self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
     }
 }
 
@@ -262,9 +274,16 @@ fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
         let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
         return Some((vec![use_them, look()], words(cost)));
     }
-    let cost = used_couplings(state)?.deciding_cost();
+    let used = used_couplings(state)?;
+    let cost = used.deciding_cost();
     let leave_them = Step::new("Switch couplings off", setting::COUPLINGS.to(CouplingCorrection::None));
-    (!cost.is_worth_it()).then(|| (vec![leave_them, look()], words(cost)))
+    let is_doubtful = !cost.is_worth_it() || used.unstable_in_band() > 0;
+    is_doubtful.then(|| (vec![leave_them, look()], words(cost)))
+}
+
+/// How many poles within the band the couplings that are used make unstable.
+fn unstable_in_band(state: &State) -> usize {
+    used_couplings(state).map_or(0, |used| used.unstable_in_band())
 }
 
 /// The command that opens the form of the export.
@@ -304,12 +323,12 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
         return Some((RemarkKind::Trouble, "No couplings could be found".to_owned()));
     }
     let cautions = used_couplings(state)?.cautions(state.dataset());
-    let is_trouble = cautions.iter().any(|of| of.kind == RemarkKind::Trouble);
-    match cautions.len() {
-        0 => None,
-        _ if is_trouble => Some((RemarkKind::Trouble, "Couplings: unstable in the band".to_owned())),
-        1 => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
-        count => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
+    match (unstable_in_band(state), cautions.len()) {
+        (0, 0) => None,
+        (1, _) => Some((RemarkKind::Trouble, "Couplings: 1 pole unstable in the band".to_owned())),
+        (count @ 2.., _) => Some((RemarkKind::Trouble, format!("Couplings: {count} poles unstable in the band"))),
+        (0, 1) => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
+        (0, count) => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
     }
 }
 

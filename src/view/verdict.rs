@@ -344,8 +344,10 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
 mod tests {
     use std::sync::Arc;
 
-    use gdcm_core::study::{Engine, Study, Unobserved};
+    use gdcm_core::study::{Engine, Study, Unobserved, UnstablePole};
+    use nalgebra::Complex;
 
+    use super::super::views::couplings_job;
     use super::*;
 
     fn state_of(decide: &[Edit]) -> State {
@@ -394,6 +396,41 @@ mod tests {
         let caution = verdict.caution.as_deref().unwrap_or_default();
         assert!(caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"), "{caution}");
         assert_eq!(verdict.steps[0].command, export());
+    }
+
+    #[test]
+    fn poles_that_couplings_make_unstable_in_the_band_keep_the_verdict_from_being_good() {
+        let couplings = setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback);
+        let mut state = state_of(&[reject(), setting::PHASE.to(PhaseCorrection::Lead), couplings]);
+        let study = state.study.clone();
+        let mut engine = Engine::default();
+        let assessed = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
+        let assessed = assessed.expect("nothing stops it").expect("it asks for some").expect("there are some");
+        let mut verdict_with = |poles: &[(f64, bool)]| {
+            let mut changed = (*assessed).clone();
+            changed.unstable = poles
+                .iter()
+                .map(|(real, is_in_band)| UnstablePole {
+                    condition: ConditionId(4),
+                    model: "nominal".to_owned(),
+                    is_representative: false,
+                    pole: Complex::from(*real),
+                    is_in_band: *is_in_band,
+                })
+                .collect();
+            let job = couplings_job(&state);
+            state.results.couplings = Some((job, Ok(Arc::new(changed))));
+            Verdict::of(&state)
+        };
+        let sound = verdict_with(&[]);
+        assert!(sound.is_met() && sound.unstable_in_band == 0, "{sound:?}");
+        let beyond = verdict_with(&[(90.0, false)]);
+        assert!(beyond.is_met() && beyond.unstable_in_band == 0, "{beyond:?}");
+        let within = verdict_with(&[(2.0, true), (90.0, false), (3.0, true)]);
+        assert!(!within.is_met() && within.unstable_in_band == 2, "{within:?}");
+        assert!(within.rows.iter().all(|row| row.is_met), "gains and phases are met all the same");
+        assert!(within.caution.as_ref().is_some_and(|words| words.contains("2 poles")), "{within:?}");
+        assert_eq!(within.steps[0].command, setting::COUPLINGS.to(CouplingCorrection::None).into());
     }
 
     #[test]

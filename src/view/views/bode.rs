@@ -8,7 +8,9 @@ use gdcm_core::units::{number, ratio_to_db, s_to_ms};
 use gdcm_files::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
 
 use super::View;
-use super::frequency::{bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui, wished};
+use super::frequency::{
+    bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui, wished,
+};
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};

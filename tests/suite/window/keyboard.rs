@@ -1,10 +1,11 @@
 //! Worked without the pointer.
 
 use egui::{Color32, Shape};
-use gdcm::view::command::FormKind;
+use gdcm::view::command::{Command as Action, FormKind};
 use gdcm::view::palette::Palette;
 use gdcm_core::correction::GainBounds;
 
+use super::views::give;
 use super::*;
 
 fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
@@ -43,8 +44,8 @@ fn the_space_bar_holds_and_frees_the_chosen_response() {
 #[test]
 fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
     let mut window = window();
-    click(&mut window, "Response PED → Q");
-    let response = state(&window).display.pair;
+    let response = pair(&window, "Q", "PED");
+    give(&mut window, Action::FocusPair(response));
     let views: Vec<View> = state(&window).display.arrangement.group().views().collect();
     let view = |window: &Window| state(window).display.arrangement.view();
     assert_eq!(view(&window), views[0]);

@@ -287,7 +287,7 @@ fn across_is_fitted(window: &Window) -> bool {
     let values = across_values(window);
     [Pane::Magnitude, Pane::Phase].into_iter().zip(values).all(|(pane, values)| {
         let shown = view.value_range(pane);
-        shown.min <= values.min && shown.max >= values.max && shown.width() <= 1.2 * values.width().max(10.0)
+        shown.min <= values.min && shown.max >= values.max && shown.width() <= 1.2 * values.width().max(20.0)
     })
 }
 

@@ -26,8 +26,8 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     let mut keys: Vec<(KeyboardShortcut, Command)> = entries
         .flat_map(|entry| entry.shortcuts.into_iter().map(move |shortcut| (shortcut, entry.command.clone())))
         .collect();
-    // The keys of a shortcut without Shift are also those of one with it.
-    keys.sort_by_key(|(shortcut, _)| Reverse(shortcut.modifiers.shift));
+    // The keys of a shortcut without Shift or Alt are also those of one with them: the one that asks for more goes first.
+    keys.sort_by_key(|(shortcut, _)| Reverse(u8::from(shortcut.modifiers.shift) + u8::from(shortcut.modifiers.alt)));
     let is_pressed = |shortcut: &KeyboardShortcut| ctx.input_mut(|input| input.consume_shortcut(shortcut));
     keys.into_iter().filter(|(shortcut, _)| is_pressed(shortcut)).map(|(_, command)| command).collect()
 }

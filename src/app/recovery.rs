@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use gdcm_core::message_text::{sanitized, sanitized_path};
@@ -41,6 +42,30 @@ pub struct Kept {
     pub at: SystemTime,
 }
 
+/// What becomes of the decisions that were not saved, where the window ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remains {
+    /// There are none.
+    Saved,
+    /// All of them are in the recovery file.
+    Kept(Kept),
+    /// Those taken later than these could not be kept, and why.
+    KeptInPart(Kept, String),
+    /// None of them could be kept, and why.
+    Lost(String),
+}
+
+impl Remains {
+    fn new(last: Option<Kept>, trouble: Option<String>) -> Self {
+        match (last, trouble) {
+            (None, None) => Self::Saved,
+            (Some(kept), None) => Self::Kept(kept),
+            (Some(kept), Some(why)) => Self::KeptInPart(kept, why),
+            (None, Some(why)) => Self::Lost(why),
+        }
+    }
+}
+
 /// What the thread is to do.
 enum Task {
     /// These decisions, taken then, are to be kept.
@@ -51,8 +76,8 @@ enum Task {
     Restored(LostStudy),
     /// The lost decisions are not wanted.
     Discard(LostStudy),
-    /// Whatever waits is done now; says what is kept after it, or why it is not.
-    Flush(Sender<Result<Option<Kept>, String>>),
+    /// Whatever waits is done now; says what becomes of it.
+    Flush(Sender<Remains>),
     /// What is kept now stays for the next start.
     Close,
 }
@@ -61,6 +86,10 @@ enum Task {
 #[derive(Clone)]
 pub struct Autosave {
     tasks: Sender<Task>,
+    /// What the thread kept last; it is gone where that was saved since.
+    kept: Arc<Mutex<Option<Kept>>>,
+    /// What became of the decisions when the window ended: the thread ends with it.
+    at_end: Arc<OnceLock<Remains>>,
 }
 
 impl Autosave {
@@ -68,15 +97,17 @@ impl Autosave {
     pub(super) fn start(directory: Option<&Path>, keep_after: Duration, replies: ReplySender) -> std::io::Result<Self> {
         let (tasks, to_do) = channel();
         let folder = directory.map(|directory| directory.join(FOLDER));
+        let kept = Arc::<Mutex<Option<Kept>>>::default();
+        let keeper_kept = Arc::clone(&kept);
         let work = move || {
             if let Some(lost) = folder.as_deref().map(lost_studies) {
                 replies.send(move |app| app.offer(lost));
             }
-            Keeper { folder, keep_after, replies, file: None, waits: None, kept: None, restored: Vec::new() }
-                .work(&to_do);
+            let (file, waits, restored) = (None, None, Vec::new());
+            Keeper { folder, keep_after, replies, file, waits, kept: keeper_kept, restored }.work(&to_do);
         };
         std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
-        Ok(Self { tasks })
+        Ok(Self { tasks, kept, at_end: Arc::default() })
     }
 
     fn send(&self, task: Task) {
@@ -94,19 +125,29 @@ impl Autosave {
         self.send(Task::Clear);
     }
 
-    /// Does what waits now, and says what is kept after it, or why it is not; gives up waiting after `limit`.
-    pub(super) fn flush(&self, limit: Duration) -> Result<Option<Kept>, String> {
+    /// Does what waits now, and says what becomes of it; gives up waiting after `limit`. Where the window ended, what became of it then.
+    pub(super) fn flush(&self, limit: Duration) -> Remains {
+        if let Some(remains) = self.at_end.get() {
+            return remains.clone();
+        }
         let (answer, answered) = channel();
         self.send(Task::Flush(answer));
-        answered.recv_timeout(limit).unwrap_or_else(|_| Err("the disk did not answer".to_owned()))
+        match answered.recv_timeout(limit) {
+            Ok(remains) => remains,
+            Err(_) => Remains::new(locked(&self.kept).clone(), Some("the disk did not answer".to_owned())),
+        }
     }
 
     /// Does what waits, then ends the thread.
     pub(super) fn close(&self, limit: Duration) {
-        // Nobody is left to be told.
-        let _ = self.flush(limit);
+        self.at_end.get_or_init(|| self.flush(limit));
         self.send(Task::Close);
     }
+}
+
+/// A panic while the lock was held leaves a content that is still whole.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What the thread works with.
@@ -117,7 +158,7 @@ struct Keeper {
     file: Option<RecoveryFile>,
     /// What is to be kept, when it was decided, and when it is due.
     waits: Option<(Box<Unsaved>, SystemTime, Instant)>,
-    kept: Option<Kept>,
+    kept: Arc<Mutex<Option<Kept>>>,
     restored: Vec<LostStudy>,
 }
 
@@ -133,7 +174,7 @@ impl Keeper {
                 }
                 Ok(Task::Clear) => {
                     self.waits = None;
-                    self.kept = None;
+                    *locked(&self.kept) = None;
                     let cleared = self.file.as_mut().map_or(Ok(()), RecoveryFile::clear);
                     let removed = cleared.and_then(|()| self.remove_restored());
                     self.tell(removed);
@@ -141,12 +182,14 @@ impl Keeper {
                 Ok(Task::Restored(lost)) => self.restored.push(lost),
                 Ok(Task::Discard(lost)) => self.tell(lost.remove()),
                 Ok(Task::Flush(answer)) => {
-                    let kept = match (&self.waits, &self.folder) {
-                        (Some(_), None) => Err("there is no directory for them".to_owned()),
-                        _ => self.keep().map_err(|error| error.to_string()),
+                    let kept = self.keep();
+                    let trouble = match (&self.waits, &self.folder) {
+                        (None, _) => None,
+                        (Some(_), None) => Some("there is no directory for them".to_owned()),
+                        (Some(_), Some(_)) => kept.err().map(|error| error.to_string()),
                     };
                     // Who gave up waiting does not listen.
-                    let _ = answer.send(kept.map(|()| self.kept.clone()));
+                    let _ = answer.send(Remains::new(locked(&self.kept).clone(), trouble));
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     let kept = self.keep();
@@ -163,7 +206,7 @@ impl Keeper {
         let Some((unsaved, decided, _)) = self.waits.take() else { return Ok(()) };
         match keep(&unsaved, &mut self.file, folder) {
             Ok(path) => {
-                self.kept = Some(Kept { path, at: decided });
+                *locked(&self.kept) = Some(Kept { path, at: decided });
                 self.remove_restored()
             }
             Err(error) => {
@@ -268,15 +311,17 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
 }
 
 /// What is said on standard error when the window itself fails.
-pub(super) fn end_words(fault: &str, kept: &Result<Option<Kept>, String>) -> String {
+pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     let fault = format!("stopped by a fault in its window: {fault}");
-    match kept {
-        Ok(Some(Kept { path, at })) => {
-            let time = when(*at, &TimeZone::system());
-            format!("{fault}; your decisions up to {time} are in {}", sanitized_path(path))
-        }
-        Ok(None) => format!("{fault}; every decision was saved"),
-        Err(why) => format!("{fault}; the decisions that were not saved are lost: {why}"),
+    let kept_words = |kept: &Kept| {
+        let time = when(kept.at, &TimeZone::system());
+        format!("your decisions up to {time} are in {}", sanitized_path(&kept.path))
+    };
+    match remains {
+        Remains::Kept(kept) => format!("{fault}; {}", kept_words(kept)),
+        Remains::Saved => format!("{fault}; every decision was saved"),
+        Remains::KeptInPart(kept, why) => format!("{fault}; {}, later ones are lost: {why}", kept_words(kept)),
+        Remains::Lost(why) => format!("{fault}; the decisions that were not saved are lost: {why}"),
     }
 }
 
@@ -291,16 +336,68 @@ mod tests {
         assert_eq!(when(at, &TimeZone::fixed(jiff::tz::offset(1))), "15:32 on 21 Nov 2026");
     }
 
+    fn unsaved() -> Unsaved {
+        let loaded = gdcm_files::embedded_example().unwrap();
+        Unsaved { study: Study::new(Arc::clone(&loaded.dataset)), loaded, saved_as: None }
+    }
+
+    fn autosave(directory: Option<&Path>) -> Autosave {
+        Autosave::start(directory, NEVER, ReplySender::new(&egui::Context::default()).0).unwrap()
+    }
+
+    /// Far above what the slowest disk needs.
+    const LONG: Duration = Duration::from_secs(600);
+
+    #[test]
+    fn decisions_that_were_kept_when_the_window_ended_are_not_said_to_be_lost() {
+        let directory = tempfile::tempdir().unwrap();
+        let autosave = autosave(Some(directory.path()));
+        autosave.keep(unsaved());
+        // The window goes with the display, and its thread with it; then the program says what became of the decisions.
+        autosave.clone().close(LONG);
+        let Remains::Kept(kept) = autosave.flush(LONG) else { panic!("{:?}", autosave.flush(LONG)) };
+        assert!(kept.path.is_file() && gdcm_files::open_study(&kept.path).is_ok());
+        let words = end_words("no display", &autosave.flush(LONG));
+        assert!(words.contains(&*kept.path.to_string_lossy()) && !words.contains("lost"), "{words}");
+    }
+
+    #[test]
+    fn a_window_that_ends_without_decisions_or_without_a_directory_says_so() {
+        let directory = tempfile::tempdir().unwrap();
+        let nothing = autosave(Some(directory.path()));
+        nothing.close(LONG);
+        assert_eq!(nothing.flush(LONG), Remains::Saved);
+        let nowhere = autosave(None);
+        nowhere.keep(unsaved());
+        nowhere.close(LONG);
+        assert!(matches!(nowhere.flush(LONG), Remains::Lost(_)));
+    }
+
+    #[test]
+    fn what_was_kept_before_the_disk_failed_is_named() {
+        let directory = tempfile::tempdir().unwrap();
+        let autosave = autosave(Some(directory.path()));
+        autosave.keep(unsaved());
+        let Remains::Kept(first) = autosave.flush(LONG) else { panic!("the disk takes it") };
+        // A folder in the place of the file: no file can be put there.
+        std::fs::remove_file(&first.path).unwrap();
+        std::fs::create_dir(&first.path).unwrap();
+        std::fs::write(first.path.join("in the way"), "").unwrap();
+        autosave.keep(unsaved());
+        autosave.close(LONG);
+        assert!(matches!(autosave.flush(LONG), Remains::KeptInPart(kept, _) if kept == first));
+    }
+
     #[test]
     fn the_last_words_name_the_fault_its_place_and_the_recovery_file() {
         let fault = "out of range at src/view/centre.rs:7";
         let kept = Kept { path: "/data/recovery/7-1.gdcm-study.json".into(), at: SystemTime::UNIX_EPOCH };
-        let words = end_words(fault, &Ok(Some(kept)));
+        let words = end_words(fault, &Remains::Kept(kept));
         assert!(
             words.starts_with("stopped by a fault in its window: out of range at src/view/centre.rs:7;"),
             "{words}"
         );
         assert!(words.ends_with("1970 are in /data/recovery/7-1.gdcm-study.json"), "{words}");
-        assert!(end_words(fault, &Ok(None)).ends_with("; every decision was saved"));
+        assert!(end_words(fault, &Remains::Saved).ends_with("; every decision was saved"));
     }
 }

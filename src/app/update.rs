@@ -107,10 +107,7 @@ impl GdcmApp {
             Command::ShowBars(shown) => display.hide_bars = !shown,
             Command::Overlay(variant) => display.overlaid = variant,
             Command::ShowEvidence(shown) => display.show_evidence = shown,
-            Command::ShowAcross(role) => {
-                display.across_role = role;
-                display.across.request_refit();
-            }
+            Command::ShowAcross(role) => display.across_role = role,
             Command::Assess(figures) => display.assessed = figures,
             Command::ShowRequirements(page) => {
                 (display.requirements_page, display.requirements_sorting) = (page, Default::default());

@@ -170,7 +170,7 @@ fn mode_section(requirements: &Requirements) -> String {
             (ModeVerdict::Outside, "outside"),
             (ModeVerdict::NotDetermined, "not determined by flight"),
             (ModeVerdict::NoTolerance, "without a tolerance"),
-            (ModeVerdict::NotPaired, "without a counterpart"),
+            (ModeVerdict::NotPaired, "unpaired"),
         ];
         let counts = counts.map(|(verdict, words)| format!("{} {words}", count(verdict)));
         format!("of {model} against identified: {}", counts.join(", "))

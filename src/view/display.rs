@@ -103,6 +103,8 @@ pub struct Display {
     pub across_role: AcrossRole,
     /// Ranges and transforms of the plot of several conditions.
     pub across: BodeView,
+    /// The response, and the model of each condition, that this plot was fitted to last.
+    pub across_fitted: Option<(Pair, AcrossRole)>,
     /// Shapes of several conditions' responses, kept from frame to frame.
     pub across_shapes: AirspeedCache,
     /// The name that the present decisions are to be kept under, as typed.
@@ -130,6 +132,7 @@ impl Display {
     pub fn fit_frequency_plots(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();
+        self.across.request_fit();
     }
 
     /// Shows other curves in the plots over frequency: what nobody has zoomed is fitted to them.

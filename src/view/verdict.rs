@@ -24,6 +24,8 @@ pub struct Verdict {
     pub note: String,
     /// What has to be known before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<String>,
+    /// How many poles of kept physics models the couplings that are used make unstable within the band, in all conditions.
+    pub unstable_in_band: usize,
     /// How many sentences the list of reasons has.
     pub reasons: usize,
 }
@@ -90,6 +92,7 @@ impl Verdict {
             steps,
             note: String::new(),
             caution: None,
+            unstable_in_band: 0,
             reasons: 0,
         };
         match state.outcome() {
@@ -105,12 +108,21 @@ impl Verdict {
         let reasons = super::remarks_shown(state, shown).len();
         let (steps, note) = steps(state, shown);
         let caution = caution(state, shown);
-        Self { condition: shown.condition.id(), rows: rows(state, shown), steps, note, caution, reasons }
+        let unstable_in_band = unstable_in_band(state);
+        Self {
+            condition: shown.condition.id(),
+            rows: rows(state, shown),
+            steps,
+            note,
+            caution,
+            unstable_in_band,
+            reasons,
+        }
     }
 
-    /// Whether gains and phases are met.
+    /// Whether gains and phases are met, and no pole within the band became unstable for it.
     pub fn is_met(&self) -> bool {
-        self.rows.iter().all(|row| row.is_met)
+        self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
     }
 }
 
@@ -262,9 +274,16 @@ fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
         let use_them = Step::new("Use couplings", setting::COUPLINGS.to(assessment.couplings));
         return Some((vec![use_them, look()], words(cost)));
     }
-    let cost = used_couplings(state)?.deciding_cost();
+    let used = used_couplings(state)?;
+    let cost = used.deciding_cost();
     let leave_them = Step::new("Switch couplings off", setting::COUPLINGS.to(CouplingCorrection::None));
-    (!cost.is_worth_it()).then(|| (vec![leave_them, look()], words(cost)))
+    let is_doubtful = !cost.is_worth_it() || used.unstable_in_band() > 0;
+    is_doubtful.then(|| (vec![leave_them, look()], words(cost)))
+}
+
+/// How many poles within the band the couplings that are used make unstable.
+fn unstable_in_band(state: &State) -> usize {
+    used_couplings(state).map_or(0, |used| used.unstable_in_band())
 }
 
 /// The command that opens the form of the export.
@@ -304,12 +323,12 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
         return Some((RemarkKind::Trouble, "No couplings could be found".to_owned()));
     }
     let cautions = used_couplings(state)?.cautions(state.dataset());
-    let is_trouble = cautions.iter().any(|of| of.kind == RemarkKind::Trouble);
-    match cautions.len() {
-        0 => None,
-        _ if is_trouble => Some((RemarkKind::Trouble, "Couplings: unstable in the band".to_owned())),
-        1 => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
-        count => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
+    match (unstable_in_band(state), cautions.len()) {
+        (0, 0) => None,
+        (1, _) => Some((RemarkKind::Trouble, "Couplings: 1 pole unstable in the band".to_owned())),
+        (count @ 2.., _) => Some((RemarkKind::Trouble, format!("Couplings: {count} poles unstable in the band"))),
+        (0, 1) => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
+        (0, count) => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
     }
 }
 
@@ -325,8 +344,10 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
 mod tests {
     use std::sync::Arc;
 
-    use gdcm_core::study::{Engine, Study, Unobserved};
+    use gdcm_core::study::{Engine, Study, Unobserved, UnstablePole};
+    use nalgebra::Complex;
 
+    use super::super::views::couplings_job;
     use super::*;
 
     fn state_of(decide: &[Edit]) -> State {
@@ -375,6 +396,41 @@ mod tests {
         let caution = verdict.caution.as_deref().unwrap_or_default();
         assert!(caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"), "{caution}");
         assert_eq!(verdict.steps[0].command, export());
+    }
+
+    #[test]
+    fn poles_that_couplings_make_unstable_in_the_band_keep_the_verdict_from_being_good() {
+        let couplings = setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback);
+        let mut state = state_of(&[reject(), setting::PHASE.to(PhaseCorrection::Lead), couplings]);
+        let study = state.study.clone();
+        let mut engine = Engine::default();
+        let assessed = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
+        let assessed = assessed.expect("nothing stops it").expect("it asks for some").expect("there are some");
+        let mut verdict_with = |poles: &[(f64, bool)]| {
+            let mut changed = (*assessed).clone();
+            changed.unstable = poles
+                .iter()
+                .map(|(real, is_in_band)| UnstablePole {
+                    condition: ConditionId(4),
+                    model: "nominal".to_owned(),
+                    is_representative: false,
+                    pole: Complex::from(*real),
+                    is_in_band: *is_in_band,
+                })
+                .collect();
+            let job = couplings_job(&state);
+            state.results.couplings = Some((job, Ok(Arc::new(changed))));
+            Verdict::of(&state)
+        };
+        let sound = verdict_with(&[]);
+        assert!(sound.is_met() && sound.unstable_in_band == 0, "{sound:?}");
+        let beyond = verdict_with(&[(90.0, false)]);
+        assert!(beyond.is_met() && beyond.unstable_in_band == 0, "{beyond:?}");
+        let within = verdict_with(&[(2.0, true), (90.0, false), (3.0, true)]);
+        assert!(!within.is_met() && within.unstable_in_band == 2, "{within:?}");
+        assert!(within.rows.iter().all(|row| row.is_met), "gains and phases are met all the same");
+        assert!(within.caution.as_ref().is_some_and(|words| words.contains("2 poles")), "{within:?}");
+        assert_eq!(within.steps[0].command, setting::COUPLINGS.to(CouplingCorrection::None).into());
     }
 
     #[test]

@@ -3,14 +3,16 @@
 use std::collections::BTreeSet;
 
 use egui::{
-    Align2, Color32, CursorIcon, Id, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_core::units::signed;
 use gdcm_files::figure::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
-use super::bode_pane::{BodeBand, Emphasis, ReferenceLine, VALUE_AXIS_WIDTH, band_handles_ui, pane_ui, rule_ends};
+use super::bode_pane::{
+    BodeBand, Emphasis, ReferenceLine, VALUE_AXIS_WIDTH, band_handles_ui, distance_to_rules, pane_ui, rule_ends,
+};
 use super::bode_view::BodeView;
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
 use super::curve_style::Role;
@@ -50,6 +52,8 @@ pub struct BodeScene<'a> {
     pub curves: &'a [BodeCurve],
     /// Labelled lines across the panes.
     pub rules: &'a [ReferenceLine],
+    /// The curve that the others are compared with: no model is decided on by a click on it.
+    pub reference: Option<&'a CurveId>,
     /// Areas around curves.
     pub bands: &'a [BodeBand],
     /// Coherence of measured responses, in a strip below the panes.
@@ -252,7 +256,8 @@ fn panes_ui(
         ask_for_menu(&response, scene, pointing, view);
         has_focus |= response.has_focus();
         menu_ui(&response, scene, view, events, palette);
-        response.on_hover_cursor(if hit.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair });
+        let takes_click = hit.is_some_and(|hit| takes_clicks(scene, hit));
+        response.on_hover_cursor(if takes_click { CursorIcon::PointingHand } else { CursorIcon::Crosshair });
     }
     if let Some((pane, area)) = view.selection.take()
         && let Some(transform) = view.transform(pane)
@@ -327,10 +332,21 @@ impl Pointing {
             let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
             let log_omega = transform.value_from_position(pointer).x;
             // While something is dragged, curves passing under the pointer are not meant.
-            let hit = if is_dragging { None } else { nearest(scene.curves, pane, pointer, transform) };
+            let hit = if is_dragging { None } else { meant(scene, pane, pointer, transform) };
             Some(Self { log_omega, hit })
         })
     }
+}
+
+/// The curve that the pointer means: the nearest one, unless a line that curves are read against, which is drawn over them, is as near.
+fn meant(scene: &BodeScene<'_>, pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
+    let hit = nearest(scene.curves, pane, pointer, transform)?;
+    let is_on_rule = distance_to_rules(scene.rules, pane, pointer, transform).is_some_and(|rule| rule <= hit.distance);
+    if is_on_rule { None } else { Some(hit) }
+}
+
+fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
+    scene.reference != Some(&scene.curves[hit.curve].id)
 }
 
 /// The panes, from above.
@@ -343,15 +359,15 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
-/// A click means the nearest curve. The second of a double click takes the first one back where that meant a curve, and fits the
-/// plot on empty ground.
+/// A click means the nearest curve, and nothing where that is the reference. The second of a double click takes the first one back
+/// where that meant a curve, and fits the plot on empty ground.
 fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
     if !response.clicked() {
         return;
     }
     let pointer = response.interact_pointer_pos();
-    let hit = pointer.zip(view.transform(pane)).and_then(|(at, transform)| nearest(scene.curves, pane, at, transform));
-    let id = hit.map(|hit| scene.curves[hit.curve].id.clone());
+    let hit = pointer.zip(view.transform(pane)).and_then(|(at, transform)| meant(scene, pane, at, transform));
+    let id = hit.filter(|hit| takes_clicks(scene, *hit)).map(|hit| scene.curves[hit.curve].id.clone());
     let before = view.last_clicked.take();
     match (response.double_clicked(), before, id) {
         (true, Some(before), _) => events.push(BodeEvent::TakenBack(before)),

@@ -14,7 +14,7 @@ use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, curve_lines, pixel_of};
-use super::navigation::{Turn, drawn_box_ui, plot_keys, turned};
+use super::navigation::{Turn, distance_to, drawn_box_ui, plot_keys, turned};
 use crate::view::controls::elided;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
@@ -375,6 +375,23 @@ pub(super) fn rules_ui(ui: &Ui, rules: &[ReferenceLine], pane: Pane, transform: 
         palette.curve_style(rule.kind.line()).add_shapes(path(&rule.level, transform), &mut shapes);
     }
     painter.extend(shapes);
+}
+
+/// How far the nearest rule of a pane is from `pointer` \[pt\]; none where none comes near.
+pub(super) fn distance_to_rules(
+    rules: &[ReferenceLine],
+    pane: Pane,
+    pointer: egui::Pos2,
+    transform: &PlotTransform,
+) -> Option<f32> {
+    let mut least: Option<f32> = None;
+    for rule in rules.iter().filter(|rule| rule.pane == pane) {
+        let points = rule.level.points(transform.bounds().min()[0], transform.bounds().max()[0]);
+        if let Some((distance, _)) = distance_to(points.into_iter(), pointer, transform) {
+            least = Some(least.map_or(distance, |known| known.min(distance)));
+        }
+    }
+    least
 }
 
 /// The labels of the rules of a pane, each at the height where its line leaves the plot, what is said besides below it.

@@ -244,7 +244,7 @@ fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
 }
 
 /// Distance from `pointer` to a curve and the point of the curve that has it; nothing where no part comes near.
-fn distance_to(
+pub(super) fn distance_to(
     points: impl Iterator<Item = [f64; 2]>,
     pointer: Pos2,
     transform: &PlotTransform,

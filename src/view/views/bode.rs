@@ -1,14 +1,16 @@
 //! The views of responses over frequency: the focused one, large, what the fit sees of it, the same response in every condition, and every
 //! response of a condition, small.
 
-use egui::{Align2, Pos2, Rect, Ui, pos2, vec2};
+use egui::{Align2, Pos2, Rect, Ui, vec2};
 use gdcm_core::dataset::Pair;
 use gdcm_core::study::{AcrossJob, AcrossRole, Undefined, display_band};
 use gdcm_core::units::{number, ratio_to_db, s_to_ms};
 use gdcm_files::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
 
 use super::View;
-use super::frequency::{bode_curves, bode_options, condition_source, error_curves, frequency_plot_ui, wished};
+use super::frequency::{
+    bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui, wished,
+};
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -136,6 +138,7 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     let curves = error_curves(state, pair, &options);
     let rules =
         condition_source(state).map(|source| source.error_references(pair, &options, &curves)).unwrap_or_default();
+    let reference = error_reference(&curves);
     let strips = noticed(&curves, &options);
     let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
     let quantity = BodeQuantity::Error { phase: options.phase_error };
@@ -144,6 +147,7 @@ pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
     let scene = BodeScene {
         quantity,
         rules: &rules,
+        reference: reference.as_ref(),
         strips: &strips,
         omega_range: grid.and_then(|omega| Some((*omega.first()?, *omega.last()?))),
         message: Some(&message),
@@ -215,9 +219,9 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
 /// Magnitude and phase of the response in focus, of one model of every condition; a click shows a condition.
 pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let curves = across_curves(state);
+    fit_across(state);
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
-    let rect = ui.available_rect_before_wrap();
     let (quantity, unit) = (BodeQuantity::RESPONSE_OF_EVERY_CONDITION, state.display.unit);
     let scene = BodeScene {
         quantity,
@@ -232,8 +236,24 @@ pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, command
         }
     }
     commands.extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
-    let place = pos2(rect.right() - 16.0, rect.top() + 14.0);
-    ui.painter().text(place, Align2::RIGHT_TOP, title, egui::FontId::proportional(SMALL_SIZE), palette.text);
+    if let Some(transform) = state.display.across.transform(Pane::Magnitude).filter(|_| !curves.is_empty()) {
+        let place = transform.frame().right_top() + vec2(-8.0, 6.0);
+        ui.painter().text(place, Align2::RIGHT_TOP, title, egui::FontId::proportional(SMALL_SIZE), palette.text);
+    }
+}
+
+/// Fits the plot of several conditions to the curves of another response or of other models, as soon as these are there.
+fn fit_across(state: &mut State) {
+    let asked = (state.display.pair, state.display.across_role);
+    if state.display.across_fitted == Some(asked) {
+        return;
+    }
+    state.display.across.request_refit();
+    // Until then the curves of the models that were shown before are drawn.
+    let models = across_job(state).models;
+    if state.results.across.as_ref().is_some_and(|(job, _)| job.models == models) {
+        state.display.across_fitted = Some(asked);
+    }
 }
 
 /// Frequencies of each curve.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use egui::Ui;
-use gdcm_core::dataset::{Band, ModelId, Pair};
+use gdcm_core::dataset::{Band, BundleKind, ModelId, Pair};
 use gdcm_core::fidelity::summand;
 use gdcm_core::response::wrap;
 use gdcm_core::study::{Edit, setting};
@@ -198,7 +198,7 @@ pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCur
     let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
     let options = bode_options(state);
     let curves = condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
-    let drawn = pointed_out(state, curves.unwrap_or_default());
+    let drawn = pointed_out(state, curves.unwrap_or_default(), None);
     state.display.shapes.insert(pair, cache);
     drawn
 }
@@ -207,15 +207,30 @@ pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCur
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.errors);
     let curves = condition_source(state).map(|source| source.error_curves(pair, options, &mut cache));
-    let drawn = pointed_out(state, curves.unwrap_or_default());
+    let curves = curves.unwrap_or_default();
+    let reference = error_reference(&curves);
+    let drawn = pointed_out(state, curves, reference.as_ref());
     state.display.errors = cache;
     drawn
 }
 
-/// The curves with what they are in the window: those pointed at stand out, and what a click does is said.
-fn pointed_out(state: &State, mut curves: Vec<BodeCurve>) -> Vec<BodeCurve> {
+/// Among errors the curve of the identified model: it is zero everywhere, and the others are read against it.
+pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
+    let is_identified =
+        |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Identified);
+    curves.iter().find(is_identified).map(|curve| curve.id.clone())
+}
+
+/// The curves with what they are in the window: those pointed at stand out, and what a click does is said, which does nothing on the
+/// reference.
+fn pointed_out(state: &State, mut curves: Vec<BodeCurve>, reference: Option<&CurveId>) -> Vec<BodeCurve> {
     for curve in &mut curves {
         match &curve.id {
+            CurveId::Model(id) if reference == Some(&curve.id) => {
+                curve.highlighted = state.display.hovered.as_ref() == Some(id);
+                let separator = if curve.detail.is_empty() { "" } else { " · " };
+                curve.detail.push_str(&format!("{separator}the reference of the errors"));
+            }
             CurveId::Model(id) => {
                 let is_selected = state.display.curves.selected.contains(id);
                 curve.highlighted = is_selected || state.display.hovered.as_ref() == Some(id);

@@ -4,6 +4,8 @@ use super::plots::{drag_along, place_on_nominal};
 use super::views::show;
 use super::*;
 use gdcm::view::View;
+use gdcm::view::plot::PICK_RADIUS;
+use gdcm_files::figure::{BodeOptions, ConditionSource};
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
@@ -103,6 +105,63 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     assert!(zoomed.0 > 0.5 && zoomed.1 < 12.0, "{zoomed:?}");
     click(&mut window, "Bode");
     assert_eq!(state(&window).display.bode.omega_range(), zoomed);
+}
+
+/// Clicks a place once, far enough in time from the click before not to make a double click of it.
+fn click_once(window: &mut Window, place: Pos2) {
+    window.hover_at(place);
+    window.run_steps(4);
+    window.drag_at(place);
+    window.run_steps(1);
+    window.drop_at(place);
+    settle(window);
+}
+
+#[test]
+fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
+    let mut window = window();
+    choose_condition_10(&mut window);
+    show(&mut window, View::Error);
+    settle(&mut window);
+    let before = state(&window).study.clone();
+    let (panes, omegas) = ([Pane::Magnitude, Pane::Phase], [0.8, 1.5, 3.0, 7.0]);
+    // Zero: the identified model that the others are compared with.
+    for (pane, omega) in panes.into_iter().flat_map(|pane| omegas.map(|omega| (pane, omega))) {
+        let place = state(&window).display.error.screen_position(pane, omega, 0.0).unwrap();
+        click_once(&mut window, place);
+        assert_eq!(state(&window).study, before, "zero at {omega} rad/s, {pane:?}");
+    }
+    let zero = error(&window, CurveRole::IdentifiedRepresentative);
+    assert!(!zero.detail.contains("click"), "{}", zero.detail);
+    // G, D, quantiles and bounds.
+    let pair = state(&window).display.pair;
+    let source = ConditionSource {
+        study: &state(&window).study,
+        analysis: state(&window).shown(),
+        schedule: None,
+        curves: state(&window).curves().unwrap(),
+        variant: None,
+    };
+    let rules = source.error_references(pair, &BodeOptions::default(), &state(&window).display.drawn_errors);
+    let mut near_curves = 0;
+    for rule in &rules {
+        for omega in omegas {
+            let view = &state(&window).display.error;
+            let place = view.screen_position(rule.pane, omega, rule.level.at(omega)).unwrap();
+            if !view.transform(rule.pane).unwrap().frame().shrink(2.0).contains(place) {
+                continue;
+            }
+            let is_near = |curve: &BodeCurve| {
+                let value = curve.value_at(rule.pane, omega);
+                let at = value.and_then(|value| view.screen_position(rule.pane, omega, value));
+                at.is_some_and(|at| at.distance(place) < PICK_RADIUS)
+            };
+            near_curves += usize::from(state(&window).display.drawn_errors.iter().any(is_near));
+            click_once(&mut window, place);
+            assert_eq!(state(&window).study, before, "{} at {omega} rad/s", rule.label);
+        }
+    }
+    assert!(near_curves > 2, "curves are within reach of the pointer there: {near_curves} of {} lines", rules.len());
 }
 
 #[test]

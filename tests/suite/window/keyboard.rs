@@ -1,10 +1,11 @@
 //! Worked without the pointer.
 
 use egui::{Color32, Shape};
-use gdcm::view::command::FormKind;
+use gdcm::view::command::{Command as Action, FormKind};
 use gdcm::view::palette::Palette;
 use gdcm_core::correction::GainBounds;
 
+use super::views::give;
 use super::*;
 
 fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
@@ -38,6 +39,29 @@ fn the_space_bar_holds_and_frees_the_chosen_response() {
         settle(&mut window);
         assert_eq!(state(&window).study.settings.constrained[target], held);
     }
+}
+
+#[test]
+fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
+    let mut window = window();
+    let response = pair(&window, "Q", "PED");
+    give(&mut window, Action::FocusPair(response));
+    let views: Vec<View> = state(&window).display.arrangement.group().views().collect();
+    let view = |window: &Window| state(window).display.arrangement.view();
+    assert_eq!(view(&window), views[0]);
+    for (key, expected) in [
+        (Key::ArrowRight, views[1]),
+        (Key::ArrowRight, views[2]),
+        (Key::ArrowLeft, views[1]),
+        (Key::ArrowLeft, views[0]),
+        (Key::ArrowLeft, views[views.len() - 1]),
+    ] {
+        press(&mut window, Modifiers::ALT, key);
+        assert_eq!((view(&window), state(&window).display.pair), (expected, response), "{key:?}");
+    }
+    press(&mut window, Modifiers::NONE, Key::ArrowRight);
+    assert_ne!(state(&window).display.pair, response, "without Alt it is the next response");
+    assert_eq!(view(&window), views[views.len() - 1]);
 }
 
 #[test]

@@ -1,8 +1,12 @@
 //! The plots, worked with the pointer.
 
 use gdcm::view::View;
+use gdcm::view::command::Command as Action;
+use gdcm_core::study::AcrossRole;
+use gdcm_files::figure::{AirspeedCache, Range, airspeed_curves, fitted_values};
 
-use super::views::show;
+use super::lists::texts_in;
+use super::views::{give, show};
 use super::*;
 
 /// A point of the nominal model's curve.
@@ -265,4 +269,82 @@ fn pointing_at_plots_starts_no_analysis() {
     let same =
         state(&window).results.analysis.as_ref().zip(analysis.as_ref()).map(|(a, b)| std::sync::Arc::ptr_eq(a, b));
     assert_eq!(same, Some(true));
+}
+
+/// What Airspeeds has to show of magnitude and phase: the values of its curves within the band.
+fn across_values(window: &Window) -> [Range; 2] {
+    let state = state(window);
+    let (made_of, display) = ((state.dataset(), state.analysis()), &state.display);
+    let curves = state.across().expect("the responses are there");
+    let drawn = airspeed_curves(made_of, display.across_role, display.pair, curves, &mut AirspeedCache::default());
+    let band = state.study.settings.band;
+    [Pane::Magnitude, Pane::Phase].map(|pane| fitted_values(&drawn, pane, (band.min(), band.max())).expect("curves"))
+}
+
+/// Whether Airspeeds shows just that, but for a margin.
+fn across_is_fitted(window: &Window) -> bool {
+    let view = &state(window).display.across;
+    let values = across_values(window);
+    [Pane::Magnitude, Pane::Phase].into_iter().zip(values).all(|(pane, values)| {
+        let shown = view.value_range(pane);
+        shown.min <= values.min && shown.max >= values.max && shown.width() <= 1.2 * values.width().max(20.0)
+    })
+}
+
+/// Turns the wheel over the magnitudes of Airspeeds.
+fn zoom_across(window: &mut Window) {
+    let frame = *state(window).display.across.transform(Pane::Magnitude).expect("it is drawn").frame();
+    window.hover_at(frame.center());
+    window.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: vec2(0.0, 8.0),
+        phase: egui::TouchPhase::Move,
+        modifiers: Modifiers::NONE,
+        source: egui::MouseWheelSource::Wheel,
+    });
+    window.run_steps(24);
+    assert!(!across_is_fitted(window), "the wheel looks closer");
+}
+
+#[test]
+fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
+    let mut window = window();
+    show(&mut window, View::Across);
+    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
+    window.run_steps(2);
+    assert!(across_is_fitted(&window));
+    let before = state(&window).display.across.value_range(Pane::Magnitude);
+    for (output, input) in [("NX", "PED"), ("NZ", "LAT"), ("P", "LAT")] {
+        click(&mut window, &format!("Response {input} → {output}"));
+        assert!(across_is_fitted(&window), "{input} → {output}");
+    }
+    click(&mut window, "Response PED → NX");
+    assert_ne!(state(&window).display.across.value_range(Pane::Magnitude), before, "they are far apart");
+    give(&mut window, Action::ShowAcross(AcrossRole::Identified));
+    settle(&mut window);
+    wait_for_background(&mut window);
+    window.run_steps(2);
+    assert!(across_is_fitted(&window), "the identified models, as soon as they are there");
+    zoom_across(&mut window);
+    window.key_press(Key::F);
+    window.run_steps(3);
+    assert!(across_is_fitted(&window), "F");
+    zoom_across(&mut window);
+    click(&mut window, "Fit");
+    assert!(across_is_fitted(&window), "Fit");
+}
+
+#[test]
+fn the_label_of_airspeeds_lies_inside_its_plot() {
+    let mut window = window();
+    show(&mut window, View::Across);
+    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
+    click(&mut window, "Response LON → Q");
+    window.run_steps(2);
+    let frame = *state(&window).display.across.transform(Pane::Magnitude).unwrap().frame();
+    // That of the heading stands above it.
+    let labels = texts_in(&window, frame.expand(30.0)).into_iter().filter(|(text, _)| text == "LON → Q");
+    let places: Vec<egui::Rect> = labels.map(|(_, place)| place).filter(|place| place.bottom() > frame.top()).collect();
+    assert_eq!(places.len(), 1, "{places:?}");
+    assert!(frame.contains_rect(places[0]), "{} in {frame}", places[0]);
 }

@@ -82,7 +82,7 @@ fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
 
 /// The column of each row, each column taken once at most, with the least total cost; there are at least as many columns as
 /// rows, and all costs are finite.
-pub(super) fn least_total(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+pub(crate) fn least_total(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     let mut potentials = (vec![0.0; rows], vec![0.0; columns]);
     let mut row_of: Vec<Option<usize>> = vec![None; columns];
     for row in 0..rows {

@@ -7,7 +7,7 @@
 //! | file | answers | standard |
 //! |---|---|---|
 //! | `bandwidth` | bandwidth, phase delay | ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742 |
-//! | `mode_comparison`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
+//! | `mode_comparison`, `mode_pairing`, `mode_name` | modes | 14 CFR part 60, appendix C, table C2A, 2.c.3.a, 2.d.3.a |
 //! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
 //! | `tolerance` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
@@ -16,6 +16,7 @@ mod bandwidth;
 mod level_boundary;
 mod mode_comparison;
 mod mode_name;
+mod mode_pairing;
 mod summary;
 mod test_input;
 mod tolerance;
@@ -25,6 +26,7 @@ pub use bandwidth::*;
 pub use level_boundary::*;
 pub use mode_comparison::*;
 pub use mode_name::*;
+pub use mode_pairing::*;
 pub use summary::*;
 pub use test_input::*;
 pub use tolerance::*;

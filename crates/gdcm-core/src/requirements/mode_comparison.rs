@@ -1,7 +1,7 @@
 //! The modes of models against those identified from flight, within tolerances that are in the engineer's hands (M17.3).
 //!
 //! ```text
-//! 1  pair the poles of every model with those of the identified one so that the sum of the distances is least (Poles view)
+//! 1  pair the modes of every model with those of the identified one by distance and shape (mode_pairing)
 //! 2  period 2 pi / |Im|, time to half amplitude ln 2 / -Re (negative: to double), damping ratio -Re / |lambda|
 //! 3  within: period, and time to half or double amplitude or damping ratio, each within its tolerance
 //! 4  sd of period: T sd_Im / |Im|;   of time to half: t sd_Re / |Re|;
@@ -16,9 +16,9 @@ use std::f64::consts::{LN_2, TAU};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
+use super::mode_pairing::{ModePair, mode_pairs, single_modes};
 use super::{ModeName, NamedBy, not_positive};
 use crate::dataset::Band;
-use crate::fidelity::{ModeTrack, mode_tracks};
 use crate::identification::PoleEstimate;
 use crate::message_text::quoted;
 use crate::response::Mode;
@@ -82,7 +82,7 @@ pub enum ModeVerdict {
     NotDetermined,
     /// The table has no tolerance for it.
     NoTolerance,
-    /// The model has no mode in its place.
+    /// Unpaired: the model has no mode within the distance and the likeness of a pair.
     NotPaired,
 }
 
@@ -121,7 +121,8 @@ pub struct ModeRow {
 /// The modes of `models` against those of the identified model `flown`, by rising frequency; of a conjugate pair one row. `estimates`
 /// are its poles as the identification knows them; empty where it does not. Nothing where it has no modes (a measured response).
 ///
-/// A row is named by the first model with named states that has a mode in its place.
+/// A row is named by the first model with named states that has a mode in its place. No two rows have the same name: the one that is
+/// surest of it keeps it.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],
@@ -129,31 +130,73 @@ pub fn compare_modes(
     band: Band,
     tolerances: &ModeToleranceTable,
 ) -> Vec<ModeRow> {
-    let all: Vec<ModelModes<'_>> = std::iter::once(flown).chain(models.iter().copied()).collect();
-    let tracks = mode_tracks(&all.iter().map(|model| model.modes).collect::<Vec<&[Mode]>>(), 0);
-    let row = |track: &ModeTrack| {
-        let mode = &flown.modes[track.reference];
-        let places: Vec<Place<'_>> =
-            all.iter().zip(&track.modes).map(|(model, at)| at.map(|at| (*model, at))).collect();
-        let (name, named_by) = name_of(&places, mode);
-        let tolerance = name.and_then(|name| tolerances.of(name)).cloned();
+    let pairs: Vec<Vec<Option<ModePair>>> =
+        models.iter().map(|model| mode_pairs(flown.modes, model.modes, band.min())).collect();
+    let flown_modes = single_modes(flown.modes);
+    let mut namings: Vec<Naming> = Vec::new();
+    for (row, &mode) in flown_modes.iter().enumerate() {
+        let of_models = models.iter().zip(&pairs).filter_map(|(model, pairs)| Some((*model, pairs[row]?)));
+        let itself = (flown, ModePair { mode, cost: 0.0 });
+        namings.push(Naming::of(&flown.modes[mode], std::iter::once(itself).chain(of_models)));
+    }
+    keep_surest_names(&mut namings);
+    let row = |(row, naming): (usize, Naming)| {
+        let mode = &flown.modes[flown_modes[row]];
+        let tolerance = naming.name.and_then(|name| tolerances.of(name)).cloned();
         let estimate = estimate_of(mode, estimates);
         let deviation = estimate.map(|estimate| ModeValues::deviation(mode, estimate));
-        let flown = compared(mode, track.reference);
+        let flown = compared(mode, flown_modes[row]);
         let is_determined = mode.frequency_rad_s >= band.min()
             && estimate.is_none_or(|estimate| estimate.determined)
             && tolerance.as_ref().zip(deviation.as_ref()).is_none_or(|(of, sd)| of.is_known(&flown.values, sd));
-        let models: Vec<Option<ComparedMode>> =
-            places[1..].iter().map(|place| place.map(|(model, at)| compared(&model.modes[at], at))).collect();
+        let in_place = |(model, pairs): (&ModelModes<'_>, &Vec<Option<ModePair>>)| {
+            pairs[row].map(|pair| compared(&model.modes[pair.mode], pair.mode))
+        };
+        let models: Vec<Option<ComparedMode>> = models.iter().zip(&pairs).map(in_place).collect();
         let verdicts =
             models.iter().map(|model| verdict(&flown, model.as_ref(), is_determined, tolerance.as_ref())).collect();
+        let Naming { name, named_by, .. } = naming;
         ModeRow { name, named_by, flown, deviation, is_determined, tolerance, models, verdicts }
     };
-    tracks.iter().map(row).collect()
+    namings.into_iter().enumerate().map(row).collect()
 }
 
-/// A model and which of its modes, where it has one in the place of the flown one.
-type Place<'a> = Option<(ModelModes<'a>, usize)>;
+/// What a row is called, and how doubtful that is.
+#[derive(Clone, Copy, Debug)]
+struct Naming {
+    name: Option<ModeName>,
+    named_by: NamedBy,
+    /// Cost of the pair whose states name it; infinite where it is named by its frequency.
+    doubt: f64,
+}
+
+impl Naming {
+    /// The name that the first of `places` with named states gives to the mode, else that of the flown mode by itself.
+    fn of<'a>(flown: &Mode, places: impl Iterator<Item = (ModelModes<'a>, ModePair)>) -> Self {
+        for (model, pair) in places {
+            if let (name, NamedBy::States) = ModeName::of(&model.modes[pair.mode], model.states) {
+                return Self { name, named_by: NamedBy::States, doubt: pair.cost };
+            }
+        }
+        let (name, named_by) = ModeName::of(flown, &[]);
+        Self { name, named_by, doubt: f64::INFINITY }
+    }
+}
+
+/// Takes a name away from every row but the one that is surest of it; of equally sure ones the slowest keeps it.
+fn keep_surest_names(namings: &mut [Naming]) {
+    let mut by_doubt: Vec<usize> = (0..namings.len()).collect();
+    by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
+    let mut taken: Vec<ModeName> = Vec::new();
+    for row in by_doubt {
+        let Some(name) = namings[row].name else { continue };
+        if taken.contains(&name) {
+            namings[row].name = None;
+        } else {
+            taken.push(name);
+        }
+    }
+}
 
 fn verdict(
     flown: &ComparedMode,
@@ -172,18 +215,6 @@ fn verdict(
 
 fn compared(mode: &Mode, at: usize) -> ComparedMode {
     ComparedMode { mode: at, pole: mode.pole, values: ModeValues::of(mode) }
-}
-
-/// The name that the first model with named states gives to the mode in its place, else that of the flown mode by itself.
-fn name_of(places: &[Place<'_>], flown: &Mode) -> (Option<ModeName>, NamedBy) {
-    let by_states = |(model, at): &(ModelModes<'_>, usize)| match ModeName::of(&model.modes[*at], model.states) {
-        (name, NamedBy::States) => Some(name),
-        (_, NamedBy::Frequency) => None,
-    };
-    match places.iter().flatten().find_map(by_states) {
-        Some(name) => (name, NamedBy::States),
-        None => ModeName::of(flown, &[]),
-    }
 }
 
 /// The estimate of a mode's pole.
@@ -425,6 +456,28 @@ mod tests {
         assert_eq!((rows[1].name, rows[1].named_by), (Some(ModeName::RollSubsidence), NamedBy::Frequency));
         assert_eq!(rows[1].models, [None, None]);
         assert_eq!(compare_modes(unnamed(&[]), &[physics], &[], band(), &ModeToleranceTable::default()), []);
+    }
+
+    #[test]
+    fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
+        // An overdamped flown pole, and a physics phugoid of two poles: they were two rows named phugoid.
+        let flown = of(dmatrix![-0.26, 0.0; 0.0, -2.8]);
+        let (physics, states) = (pair(-0.26, 0.1), ["u".to_owned(), "theta".to_owned()]);
+        let physics = ModelModes { modes: &physics, states: &states };
+        let table = ModeToleranceTable::default();
+        let rows = compare_modes(unnamed(&flown), &[physics], &[], band(), &table);
+        let found: Vec<_> = rows.iter().map(|row| (row.name, row.named_by, row.verdicts[0])).collect();
+        let expected = [
+            (Some(ModeName::Phugoid), NamedBy::States, ModeVerdict::NotDetermined),
+            (Some(ModeName::RollSubsidence), NamedBy::Frequency, ModeVerdict::NotPaired),
+        ];
+        assert_eq!(found, expected);
+        // Of two flown poles with a partner of the same name the nearer one keeps it.
+        let split = of(dmatrix![-0.26, 0.0; 0.0, -0.6]);
+        let (physics, flown) = (ModelModes { modes: &split, states: &states }, of(dmatrix![-0.27, 0.0; 0.0, -0.8]));
+        let rows = compare_modes(unnamed(&flown), &[physics], &[], band(), &table);
+        assert_eq!(rows.iter().map(|row| row.name).collect::<Vec<_>>(), [Some(ModeName::Phugoid), None]);
+        assert!(rows.iter().all(|row| row.models[0].is_some()));
     }
 
     #[test]

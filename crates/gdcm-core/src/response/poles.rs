@@ -6,6 +6,7 @@
 //! 3              y_k = 1, y_j = -(sum_(k <= i < j) y_i t_ij) / (t_jj - lambda_k), j = k + 1 ... n;    w = y Q^H
 //! 4  w v = 1: the pole moves by |w| |v| for each unit by which A changes; beyond a limit it is near defective
 //! 5  participation of state i: |w_i v_i| / sum_j |w_j v_j|, whatever the units of the states are
+//! 6  residue of output i over the inputs together: (C v)_i |w B|
 //! ```
 //!
 //! Eigenvectors: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.4. Participation: Perez-Arriaga, Verghese &
@@ -46,6 +47,9 @@ pub struct Mode {
     pub time_constant_s: Option<f64>,
     /// Share of each state (index, share), the greatest first, sum 1; or why there is none.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
+    /// Residue of each output over the inputs together: its size is the norm of a row of the residue matrix, its phase relative to those
+    /// of the other outputs. None where the pole is near defective.
+    pub residues: Option<Vec<Complex<f64>>>,
 }
 
 /// A pole so close to another that its eigenvectors, and with them the participation of states, are rounding errors: the two share
@@ -72,7 +76,11 @@ pub enum ModesError {
 }
 
 impl Mode {
-    fn new(pole: Complex<f64>, participation: Result<Vec<(usize, f64)>, NearDefective>) -> Self {
+    fn new(
+        pole: Complex<f64>,
+        participation: Result<Vec<(usize, f64)>, NearDefective>,
+        residues: Option<Vec<Complex<f64>>>,
+    ) -> Self {
         let frequency_rad_s = pole.norm();
         Self {
             pole,
@@ -80,6 +88,7 @@ impl Mode {
             damping_ratio: (frequency_rad_s > 0.0).then(|| -pole.re / frequency_rad_s),
             time_constant_s: (pole.re != 0.0).then(|| -1.0 / pole.re),
             participation,
+            residues,
         }
     }
 
@@ -111,12 +120,15 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     let mut last_pair: Option<Mode> = None;
     for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
         if let Some(upper) = last_pair.take() {
-            modes.push(Mode::new(upper.pole.conj(), upper.participation));
+            let residues = upper.residues.map(|residues| residues.iter().map(Complex::conj).collect());
+            modes.push(Mode::new(upper.pole.conj(), upper.participation, residues));
             continue;
         }
         let eigenvalue = if eigenvalue.norm() <= rounding { Complex::from(0.0) } else { eigenvalue };
         let Some(pole) = plane.value(eigenvalue) else { continue };
-        let mode = Mode::new(pole, participation(&form, index));
+        let vectors = Eigenvectors::of(&form, index);
+        let residues = vectors.as_ref().ok().map(|vectors| vectors.residues(&b, &c));
+        let mode = Mode::new(pole, vectors.map(|vectors| vectors.participation()), residues);
         last_pair = (eigenvalue.im > 0.0).then(|| mode.clone());
         modes.push(mode);
     }
@@ -138,20 +150,38 @@ pub fn modes_of(dynamics: &Dynamics) -> Result<Vec<Mode>, ModesError> {
     }
 }
 
-/// The shares of the states in the mode at this place of the diagonal.
-fn participation(form: &SchurForm, index: usize) -> Result<Vec<(usize, f64)>, NearDefective> {
-    let (x, y) = (form.right(index), form.left(index));
-    let movement = x.norm() * y.norm();
-    // Not a number, too, where they overflow.
-    if !movement.le(&NEAR_DEFECTIVE) {
-        return Err(NearDefective { movement });
+/// The eigenvectors of an eigenvalue: `A v = lambda v`, `w A = lambda w` and `w v = 1`.
+struct Eigenvectors {
+    right: DVector<Complex<f64>>,
+    left: DVector<Complex<f64>>,
+}
+
+impl Eigenvectors {
+    /// Those of the eigenvalue at this place of the diagonal.
+    fn of(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
+        let (x, y) = (form.right(index), form.left(index));
+        let movement = x.norm() * y.norm();
+        // Not a number, too, where they overflow.
+        if !movement.le(&NEAR_DEFECTIVE) {
+            return Err(NearDefective { movement });
+        }
+        Ok(Self { right: &form.q * x, left: form.q.conjugate() * y })
     }
-    let (v, w) = (&form.q * x, form.q.conjugate() * y);
-    let products: Vec<f64> = v.iter().zip(&w).map(|(v, w)| (v * w).norm()).collect();
-    let sum: f64 = products.iter().sum();
-    let mut shares: Vec<(usize, f64)> = products.into_iter().map(|product| product / sum).enumerate().collect();
-    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
-    Ok(shares)
+
+    /// The shares of the states, the greatest first.
+    fn participation(&self) -> Vec<(usize, f64)> {
+        let products: Vec<f64> = self.right.iter().zip(&self.left).map(|(v, w)| (v * w).norm()).collect();
+        let sum: f64 = products.iter().sum();
+        let mut shares: Vec<(usize, f64)> = products.into_iter().map(|product| product / sum).enumerate().collect();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+        shares
+    }
+
+    /// `(C v)_i |w B|` of each output.
+    fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
+        let of_inputs = (b.map(Complex::from).transpose() * &self.left).norm();
+        (c.map(Complex::from) * &self.right).iter().map(|output| output * of_inputs).collect()
+    }
 }
 
 /// From eigenvalues of matrices to poles and zeros `s` \[rad/s\]: themselves in continuous time, `s = ln z / T` in discrete time.

@@ -109,6 +109,11 @@ impl CouplingsAssessment {
         entries(values, bars.as_ref().map(|bars| (&bars.feedback, bars.quantile)), |_, _| false)
     }
 
+    /// Number of newly unstable poles whose frequency lies in the band of comparison, of every kept physics model.
+    pub fn unstable_in_band(&self) -> usize {
+        self.unstable.iter().filter(|of| of.is_in_band).count()
+    }
+
     /// What couplings are worth by what decides: J of conditions left out, or of the schedule where none is left out.
     pub fn deciding_cost(&self) -> CouplingCost {
         self.costs.left_out.unwrap_or(self.costs.scheduled)

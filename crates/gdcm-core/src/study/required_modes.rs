@@ -162,7 +162,36 @@ mod tests {
     use super::super::{Execution, requirements_of};
     use super::couplings_tests::EXAMPLE;
     use super::*;
-    use crate::requirements::ModeVerdict;
+    use crate::requirements::{LARGEST_PAIR_DISTANCE, ModeVerdict};
+
+    #[test]
+    fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
+        let found = requirements_of(&EXAMPLE.analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let least = EXAMPLE.analysis.study.settings.band.min();
+        let pole = |of: &ModeNumbers| nalgebra::Complex::new(of.pole_real_rad_s, of.pole_imaginary_rad_s);
+        for condition in EXAMPLE.analysis.conditions.keys() {
+            let modes = || found.modes.iter().filter(|of| of.condition == *condition);
+            let mut names: Vec<ModeName> = modes().filter_map(|of| of.name).collect();
+            let count = names.len();
+            names.sort_unstable();
+            names.dedup();
+            assert_eq!(names.len(), count, "condition {condition}");
+            let mut partners: Vec<_> = Vec::new();
+            for mode in modes() {
+                let Some(physics) = &mode.physics else {
+                    assert_eq!(mode.verdict, ModeVerdict::NotPaired);
+                    continue;
+                };
+                let (flown, physics) = (pole(&mode.identified), pole(physics));
+                let largest = flown.norm().max(physics.norm()).max(least);
+                assert!((flown - physics).norm() <= LARGEST_PAIR_DISTANCE * largest, "{condition}: {flown} {physics}");
+                assert!(!partners.contains(&physics), "condition {condition}: {physics} twice");
+                partners.push(physics);
+            }
+            assert!(modes().any(|of| of.name == Some(ModeName::DutchRoll) && of.physics.is_some()), "{condition}");
+        }
+        assert!(found.modes.iter().any(|of| of.physics.is_none()), "some flown poles are no helicopter's");
+    }
 
     #[test]
     fn a_mode_whose_deviation_is_beyond_the_tolerance_is_not_determined() {

@@ -222,7 +222,7 @@ impl ModeVerdict {
             Self::Outside => "outside",
             Self::NotDetermined => "not determined by flight",
             Self::NoTolerance => "no tolerance",
-            Self::NotPaired => "none near",
+            Self::NotPaired => "unpaired",
         }
     }
 }

@@ -26,6 +26,11 @@ impl ColumnUse {
         Self { column, factor, is_unit_open: false, remedy: ChannelRemedy::NONE }
     }
 
+    /// The same without what is put right in one record.
+    fn without_remedy(self) -> Self {
+        Self { remedy: ChannelRemedy::NONE, ..self }
+    }
+
     /// What its samples are multiplied by in all.
     pub(super) fn gain(&self) -> f64 {
         self.factor * self.remedy.factor
@@ -173,16 +178,51 @@ impl RecordLayout {
         role.of(&mut self.inputs, &mut self.outputs).get_mut(index)?.as_mut()
     }
 
+    /// This layout of `table` with what differs between two layouts of `from`, channel by channel: what is said of the columns of one
+    /// record, of another that has columns of these names. What is put right in one record alone stays as it is.
+    #[must_use]
+    pub fn following(&self, table: &RecordTable, [before, after]: [&Self; 2], from: &RecordTable) -> Self {
+        let mut layout = self.clone();
+        if before.time != after.time {
+            layout.time = match after.time {
+                Some(TimeBase::Column { column, seconds }) => match place(column, from, table) {
+                    Some(column) => Some(TimeBase::Column { column, seconds }),
+                    None => self.time,
+                },
+                other => other,
+            };
+        }
+        let sides = [
+            (&mut layout.inputs, &before.inputs, &after.inputs),
+            (&mut layout.outputs, &before.outputs, &after.outputs),
+        ];
+        for (uses, before, after) in sides {
+            for (index, own) in uses.iter_mut().enumerate() {
+                let [was, is] = [before, after].map(|uses| uses.get(index).copied().flatten());
+                let Some(is) = is.filter(|is| was.map(ColumnUse::without_remedy) != Some(is.without_remedy())) else {
+                    continue;
+                };
+                if let Some(column) = place(is.column, from, table) {
+                    let remedy = own.map_or(ChannelRemedy::NONE, |own| own.remedy);
+                    *own = Some(ColumnUse { column, remedy, ..is });
+                }
+            }
+        }
+        layout
+    }
+
+    /// The same with every unit that is still to be said taken to be that of the channel.
+    #[must_use]
+    pub fn in_units_of_channels(&self) -> Self {
+        let closed = |uses: &[Option<ColumnUse>]| -> Vec<Option<ColumnUse>> {
+            uses.iter().map(|used| used.map(|used| ColumnUse { is_unit_open: false, ..used })).collect()
+        };
+        Self { inputs: closed(&self.inputs), outputs: closed(&self.outputs), ..self.clone() }
+    }
+
     /// The same columns, by name, of another record; none where that lacks one of them.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
-        let place = |column: usize| {
-            let name = &from.columns.get(column)?.name;
-            if other.columns.get(column).is_some_and(|same| same.name == *name) {
-                Some(column)
-            } else {
-                other.find(name)
-            }
-        };
+        let place = |column: usize| place(column, from, other);
         let carry = |uses: &[Option<ColumnUse>]| -> Option<Vec<Option<ColumnUse>>> {
             let carried = |used: &Option<ColumnUse>| match used {
                 Some(used) => Some(Some(ColumnUse { column: place(used.column)?, ..*used })),
@@ -248,6 +288,12 @@ impl RecordLayout {
         }
         problems
     }
+}
+
+/// Where a column of one record is in another, by its name.
+fn place(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
+    let name = &from.columns.get(column)?.name;
+    if other.columns.get(column).is_some_and(|same| same.name == *name) { Some(column) } else { other.find(name) }
 }
 
 fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {

@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
 use super::*;
-use crate::made_up::{Flight, Gusts, stable_aircraft};
+use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
@@ -399,9 +399,10 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     assert_eq!(used_rows(&window), (18, 2));
     step(&mut window, REDO);
     assert_eq!(used_rows(&window), (99, 11));
-    // A search of little, so that the walk takes seconds.
+    // A search of little, so that the walk takes seconds; the whole one where all is tried.
+    let is_quick = tries(1, 2) == 1;
     let search = SearchSpace { orders: vec![8], pasts: vec![10], poles: vec![6.0] };
-    for id in state(&window).dataset().ids().collect::<Vec<_>>() {
+    for id in state(&window).dataset().ids().filter(|_| is_quick).collect::<Vec<_>>() {
         give(&mut window, Action::SelectCondition(id));
         give(&mut window, RecordsCommand::SetSearch(search.clone()));
     }
@@ -411,7 +412,9 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     window.run_steps(2);
     assert_eq!(state(&window).records.page, RecordsPage::Conditions);
     let table = condition_table(state(&window));
-    assert!(table.rows.len() == 11 && table.rows.iter().all(|row| row[2] == "8"), "{table:?}");
+    let is_identified =
+        |row: &Vec<String>| row.len() > 2 && row[2].parse::<usize>().is_ok_and(|order| !is_quick || order == 8);
+    assert!(table.rows.len() == 11 && table.rows.iter().all(is_identified), "{table:?}");
     window.get_by_label("Use the models of 11 conditions").click();
     window.run_steps(3);
     window.get_by_label("The refined models").click();

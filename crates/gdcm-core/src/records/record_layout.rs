@@ -495,3 +495,33 @@ impl ColumnUse {
         ChannelRemedy { factor: self.remedy.factor * besides, ..self.remedy }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(names: &[&str]) -> RecordTable {
+        let columns = names.iter().map(|name| RecordColumn::new(*name, vec![0.0, 1.0, 2.0])).collect();
+        RecordTable::new("record", columns)
+    }
+
+    #[test]
+    fn what_is_said_of_one_channel_follows_in_other_records_and_leaves_their_other_channels() {
+        let (from, other) = (table(&["t", "P", "Q"]), table(&["Q", "t", "P"]));
+        let time = |column| Some(TimeBase::Column { column, seconds: 1.0 });
+        let open = |column| Some(ColumnUse { is_unit_open: true, ..ColumnUse::as_it_is(column) });
+        let before = RecordLayout { time: time(0), inputs: Vec::new(), outputs: vec![open(1), open(2)] };
+        let mut after = before.clone();
+        after.outputs[0] = before.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
+        let remedy = ChannelRemedy { delay_s: 0.1, ..ChannelRemedy::NONE };
+        let own = ColumnUse { remedy, ..ColumnUse::as_it_is(2) };
+        let layout = RecordLayout { time: time(1), inputs: Vec::new(), outputs: vec![Some(own), open(0)] };
+        let found = layout.following(&other, [&before, &after], &from);
+        let said = found.outputs[0].unwrap();
+        assert_eq!((said.column, said.is_unit_open, said.remedy), (2, false, remedy), "by its name, its remedy kept");
+        assert!((said.factor - 180.0 / std::f64::consts::PI).abs() < 1e-12);
+        assert_eq!((found.outputs[1], found.time), (layout.outputs[1], layout.time), "nothing else");
+        let without = table(&["t", "Q"]);
+        assert_eq!(before.following(&without, [&before, &after], &from), before, "it has no such column");
+    }
+}

@@ -97,6 +97,17 @@ fn empty_lists_are_refused() {
 }
 
 #[test]
+fn a_condition_without_identified_models_is_no_fault() {
+    let mut file: Value = serde_json::from_str(include_str!("../../../../../tests/data/small-dataset.json")).unwrap();
+    file["conditions"][0]["identified_models"] = json!([]);
+    file["conditions"][1].as_object_mut().unwrap().remove("identified_models");
+    let origin = gdcm_files::DatasetOrigin::File("small.json".into());
+    let loaded = gdcm_files::load_dataset_bytes(file.to_string().as_bytes(), origin).unwrap();
+    assert_eq!(loaded.dataset.without_reference(), loaded.dataset.ids().collect::<Vec<_>>());
+    assert!(loaded.cautions.is_empty(), "{:?}", loaded.cautions);
+}
+
+#[test]
 fn ids_and_names_that_stand_twice_are_refused() {
     assert_refused(
         |file| file["conditions"][1]["id"] = json!(7),

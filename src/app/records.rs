@@ -1,6 +1,6 @@
 //! Flight records in the window: reading them in a thread, and what becomes of the wishes about them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -14,19 +14,33 @@ use gdcm_core::records::{
 };
 use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{DatasetOrigin, FileError, add_dataset, example_records, load_records, read_records, relative_entry};
+use gdcm_files::{
+    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
+};
 
 use super::threads::Untold;
 use super::{DialogPurpose, GdcmApp};
-use crate::view::records::{ConditionRecords, RecordsCommand, RecordsPage, WantedDataset};
+use crate::view::records::{AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset};
 use crate::view::views::RequirementsPage;
-use crate::view::{FormKind, View};
+use crate::view::{Command, FormKind, View};
 
 /// Records that were read, by condition, and what could not be.
 #[derive(Default)]
 struct ReadRecords {
-    rows: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+    /// Those that belong to conditions which had not been looked at before.
+    own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+    /// Those of the files that are added.
+    added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     faults: Vec<String>,
+    /// Where the files lie, by their SHA-256.
+    read_from: BTreeMap<String, PathBuf>,
+}
+
+/// Where records that belong to conditions come from, for a thread that reads them.
+#[derive(Clone)]
+struct OwnRecords {
+    dataset: Arc<Dataset>,
+    origin: DatasetOrigin,
 }
 
 impl GdcmApp {
@@ -57,14 +71,108 @@ impl GdcmApp {
             }
             RecordsCommand::Return => self.decide(&Edit::ReturnModels { condition }),
             RecordsCommand::ShowAdvanced(field) => self.state.records.advanced_field = Some(field),
-            said => {
-                let channels = self.record_channels(condition);
+            RecordsCommand::Choose(index) => {
                 if let Some(records) = self.state.records.conditions.get_mut(&condition) {
-                    say(records, said, &channels);
+                    records.choose(index);
                 }
+            }
+            RecordsCommand::SetLayout(index, layout) => self.set_layout(condition, index, &layout),
+            RecordsCommand::TakeDatasetUnits => self.take_dataset_units(),
+            RecordsCommand::ShowUnclear => self.show_unclear(),
+            said => self.edit_records(condition, said),
+        }
+    }
+
+    /// Carries out an edit of the records of a condition as a step that can be undone.
+    fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
+        let channels = self.record_channels(condition);
+        let before = self.state.records.before([condition]);
+        let Some(records) = self.state.records.conditions.get_mut(&condition) else { return };
+        let label = format!("{} (condition {condition})", edit_words(records, &command));
+        match say(records, command, &channels) {
+            Ok(true) => {
+                records.changed = true;
+                self.record_edited(label, before);
                 self.follow_band(condition);
             }
+            Ok(false) => {}
+            Err(why) => self.notify_error(why),
         }
+    }
+
+    /// Keeps an edit of records in the history.
+    fn record_edited(&mut self, label: String, before: RecordsBefore) {
+        let study = self.state.study.clone();
+        self.state.history.record_beside(study, label, before);
+        self.state.notice = None;
+    }
+
+    /// What is said of the columns of one record: of every record that has columns of these names. A record that the dataset names is
+    /// read as that says, so what is said of one that it does not name is not said of it, and the other way round.
+    fn set_layout(&mut self, condition: ConditionId, index: usize, layout: &RecordLayout) {
+        let dataset = Arc::clone(&self.state.study.dataset);
+        let of_condition = self.state.records.conditions.get(&condition);
+        let Some(row) = of_condition.and_then(|records| records.rows.get(index)) else { return };
+        let edited = (Arc::clone(&row.table), row.layout.clone());
+        let (table, former) = (&edited.0, &edited.1);
+        let is_named = table.entry_of_dataset(&dataset).is_some();
+        let label = format!("columns of {}", table.name);
+        let is_told = |id: ConditionId| id == condition || !is_named;
+        self.edit_layouts(label, |id, of| {
+            if Arc::ptr_eq(&of.table, table) && of.layout == *former {
+                return Some(layout.clone());
+            }
+            let is_alike = of.table.entry_of_dataset(&dataset).is_some() == is_named;
+            (is_told(id) && is_alike).then(|| of.layout.following(&of.table, [former, layout], table))
+        });
+    }
+
+    /// Takes every unit that no file says to be that of the dataset's channel.
+    fn take_dataset_units(&mut self) {
+        let label = "units of the dataset's channels".to_owned();
+        self.edit_layouts(label, |_, of| Some(of.layout.in_units_of_channels()));
+    }
+
+    /// Lays records of all conditions out anew, as one step that can be undone.
+    fn edit_layouts(&mut self, label: String, layout_of: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>) {
+        let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
+        let mut changed = RecordsBefore::default();
+        for id in ids {
+            let channels = self.record_channels(id);
+            let before = self.state.records.conditions.get(&id).cloned();
+            let Some(records) = self.state.records.conditions.get_mut(&id) else { continue };
+            let (mut is_changed, mut is_any_clear_now) = (false, false);
+            for row in &mut records.rows {
+                if let Some(layout) = layout_of(id, row).filter(|layout| *layout != row.layout) {
+                    let was_clear = row.flight.is_some();
+                    *row = row.laid_out(layout, &channels);
+                    is_changed = true;
+                    is_any_clear_now |= !was_clear && row.flight.is_some();
+                }
+            }
+            if is_any_clear_now {
+                leave_out_copies(&mut records.rows);
+            }
+            if is_changed {
+                records.changed = true;
+                changed.conditions.insert(id, before);
+            }
+        }
+        if !changed.conditions.is_empty() {
+            self.record_edited(label, changed);
+        }
+    }
+
+    /// Shows the first record whose units are still to be said, and its columns.
+    fn show_unclear(&mut self) {
+        let Some(id) = self.state.records.open_units().and_then(|open| open.first) else { return };
+        if let Some(records) = self.state.records.conditions.get_mut(&id) {
+            let is_unclear = |row: &LaidOutRecord| !row.problems.is_empty();
+            let index = records.rows.iter().position(is_unclear).unwrap_or(records.chosen);
+            records.choose(index);
+        }
+        self.state.records.page = RecordsPage::Columns;
+        self.dispatch(Command::SelectCondition(id));
     }
 
     /// The band that a condition is identified over: its own, or the study's.
@@ -169,50 +277,59 @@ impl GdcmApp {
         if !is_shown || bench.reading.is_some() || bench.conditions.contains_key(&id) {
             return;
         }
-        let entries = self.state.condition().records().to_vec();
         self.state.records.is_example = self.loaded.origin == DatasetOrigin::EmbeddedExample;
-        let name = format!("the records of condition {id}");
-        match &self.loaded.origin {
-            DatasetOrigin::EmbeddedExample => self.read_in_thread(name, move |_, channels, _| of_example(channels, id)),
-            DatasetOrigin::File(path) if !entries.is_empty() => {
-                let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-                self.read_in_thread(name, move |_, channels, stop| {
-                    Ok(of_entries((channels, id), &entries, &folder, &stop))
-                });
-            }
-            DatasetOrigin::File(_) => drop(self.records_of(id)),
+        let own = self.own_records();
+        if !own.has_some(id) {
+            self.records_of(id);
+            return;
         }
+        let name = format!("the records of condition {id}");
+        let sources = self.state.records.sources.clone();
+        self.read_in_thread(name, sources, move |channels, stop| {
+            let mut found = ReadRecords::default();
+            own.read(&[id], channels, &stop, &mut found)?;
+            Ok(found)
+        });
+    }
+
+    /// Where the records that belong to conditions come from.
+    fn own_records(&self) -> OwnRecords {
+        OwnRecords { dataset: Arc::clone(&self.state.study.dataset), origin: self.loaded.origin.clone() }
     }
 
     fn add_records(&mut self, paths: Vec<PathBuf>) {
         let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
+        let sources = self.state.records.sources.clone();
         self.state.records.sources.extend(paths.iter().cloned());
         let name = paths.first().map_or(String::new(), |path| path.display().to_string());
         let shown = self.state.condition().id();
-        self.read_in_thread(name, move |dataset, channels, stop| {
-            of_files((dataset, channels), shown, &paths, &Untold(stop))
+        let known = self.state.records.conditions.keys().copied().collect();
+        let own = self.own_records();
+        self.read_in_thread(name, sources, move |channels, stop| {
+            of_files((&own, channels), shown, &paths, &known, &Untold(stop))
         });
     }
 
+    /// Reads records in a thread; `sources` are the files that were added before.
     fn read_in_thread(
         &mut self,
         name: String,
-        read: impl FnOnce(&Dataset, &RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError> + Send + 'static,
+        sources: Vec<PathBuf>,
+        read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError> + Send + 'static,
     ) {
         let channels = self.record_channels(self.state.condition().id());
         let clock_band_end = channels.resampling.band_end;
-        let dataset = Arc::clone(self.state.study.file_dataset());
-        let of = Arc::clone(&dataset);
+        let of = Arc::clone(self.state.study.file_dataset());
         self.state.records.reading = Some(name);
         let (number, stop) = self.record_reader.join();
-        let read = move || read(&dataset, &channels, stop);
+        let read = move || read(&channels, stop);
         self.in_thread("the reading of records", read, move |app, found| {
             if !app.record_reader.is_newest(number) || !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
                 return;
             }
             app.state.records.reading = None;
             if let Some(found) = found.and_then(|found| app.unless_error(found)) {
-                app.take_records(found, clock_band_end);
+                app.take_records(found, clock_band_end, sources);
             }
             // What was looked for is not looked for again, found or not.
             app.records_of(app.state.condition().id());
@@ -225,28 +342,65 @@ impl GdcmApp {
         self.state.records.conditions.entry(id).or_insert_with(nothing)
     }
 
-    fn take_records(&mut self, found: ReadRecords, clock_band_end: Option<f64>) {
-        let count: usize = found.rows.values().map(Vec::len).sum();
-        let conditions = found.rows.len();
-        for (id, rows) in found.rows {
+    fn take_records(&mut self, found: ReadRecords, clock_band_end: Option<f64>, sources: Vec<PathBuf>) {
+        let ReadRecords { own, added, faults, read_from } = found;
+        let left_out = self.made_of_records().into_iter().flat_map(|made| made.left_out.iter().cloned());
+        self.state.records.faults = faults.into_iter().chain(left_out).collect();
+        self.state.records.read_from.extend(read_from);
+        let own_count: usize = own.values().map(Vec::len).sum();
+        for (id, rows) in own {
+            if self.state.records.conditions.contains_key(&id) {
+                continue;
+            }
             let records = self.records_of(id);
-            // A record that is read again takes its place.
-            records.rows.retain(|old| rows.iter().all(|new| new.table.name != old.table.name));
-            let is_known = records.rows.is_empty() || records.clock_band_end == clock_band_end;
-            records.clock_band_end = clock_band_end.filter(|_| is_known);
-            records.rows.extend(rows);
+            records.rows = rows;
+            records.clock_band_end = clock_band_end;
             leave_out_copies(&mut records.rows);
-            records.choose(records.chosen);
             records.changed = true;
         }
-        let left_out = self.made_of_records().into_iter().flat_map(|made| made.left_out.iter().cloned());
-        self.state.records.faults = found.faults.into_iter().chain(left_out).collect();
-        if count == 0 {
+        if added.is_empty() {
+            if own_count > 0 {
+                self.done(counted_records(own_count));
+            }
             return;
         }
-        let of = if conditions == 1 { String::new() } else { format!(" of {conditions} conditions") };
-        let records = if count == 1 { "record" } else { "records" };
-        self.done(format!("{count} {records}{of}"));
+        self.add_read_records(added, clock_band_end, sources);
+    }
+
+    /// Adds records that were read to those of their conditions, as one step that can be undone.
+    fn add_read_records(
+        &mut self,
+        added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
+        clock_band_end: Option<f64>,
+        sources: Vec<PathBuf>,
+    ) {
+        let mut before = self.state.records.before(added.keys().copied());
+        before.sources = Some(sources);
+        let mut counts = AddedCounts::default();
+        let read_from = self.state.records.read_from.clone();
+        for (id, rows) in added {
+            let records = self.records_of(id);
+            let is_known = records.rows.is_empty() || records.clock_band_end == clock_band_end;
+            let mut is_changed = false;
+            for row in rows {
+                let became = records.add_row(row, &read_from);
+                is_changed |= became != AddedRecord::KnownAlready;
+                counts.count(became);
+            }
+            if is_changed {
+                records.clock_band_end = clock_band_end.filter(|_| is_known);
+                leave_out_copies(&mut records.rows);
+                records.choose(records.chosen);
+                records.changed = true;
+                counts.conditions += 1;
+            } else {
+                before.conditions.remove(&id);
+            }
+        }
+        if !before.conditions.is_empty() {
+            self.record_edited(format!("add {}", counted_records(counts.new + counts.read_again)), before);
+        }
+        self.done(counts.words());
     }
 
     /// Gives up what is under way and what waits; it can be begun again.
@@ -330,16 +484,81 @@ fn set<T>(of: Option<&mut T>, change: impl FnOnce(&mut T)) {
     }
 }
 
-/// What the engineer says of the records of a condition.
-fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &RecordChannels) {
+/// How many records became what, and of how many conditions there are new ones.
+#[derive(Default)]
+struct AddedCounts {
+    new: usize,
+    read_again: usize,
+    known: usize,
+    conditions: usize,
+}
+
+impl AddedCounts {
+    fn count(&mut self, became: AddedRecord) {
+        match became {
+            AddedRecord::New => self.new += 1,
+            AddedRecord::ReadAgain => self.read_again += 1,
+            AddedRecord::KnownAlready => self.known += 1,
+        }
+    }
+
+    /// "81 records of 9 conditions added; 18 were there already".
+    fn words(&self) -> String {
+        let of = if self.conditions > 1 { format!(" of {} conditions", self.conditions) } else { String::new() };
+        let mut parts = Vec::new();
+        if self.new > 0 {
+            parts.push(format!("{}{of} added", counted_records(self.new)));
+        }
+        if self.read_again > 0 {
+            parts.push(format!("{} read again", counted_records(self.read_again)));
+        }
+        if self.known > 0 && parts.is_empty() {
+            parts.push(format!("nothing added: {} there already", counted_records(self.known)));
+        } else if self.known > 0 {
+            parts.push(format!("{} there already", self.known));
+        }
+        parts.join("; ")
+    }
+}
+
+fn counted_records(count: usize) -> String {
+    if count == 1 { "1 record".to_owned() } else { format!("{count} records") }
+}
+
+/// An edit of the records of a condition in a few words, for the undo list.
+fn edit_words(records: &ConditionRecords, command: &RecordsCommand) -> String {
+    let name = |index: &usize| records.rows.get(*index).map_or("a record", |row| row.table.name.as_str());
     match command {
-        RecordsCommand::Choose(index) => return records.choose(index),
-        RecordsCommand::SetKind(index, kind) => return set(records.rows.get_mut(index), |row| row.guess.kind = kind),
-        RecordsCommand::SetUsed(index, used) => set(records.rows.get_mut(index), |row| row.used = used),
+        RecordsCommand::SetKind(index, kind) => format!("{} is a {}", name(index), kind.word()),
+        RecordsCommand::SetUsed(index, true) => format!("use {}", name(index)),
+        RecordsCommand::SetUsed(index, false) => format!("leave {} out", name(index)),
+        RecordsCommand::SetHeldOut(index, true) => format!("hold {} out", name(index)),
+        RecordsCommand::SetHeldOut(index, false) => format!("fit {}", name(index)),
+        RecordsCommand::SetDelay(signal, _) => format!("time skew of {}", signal.name),
+        RecordsCommand::SetRemedies(index, _) => format!("put {} right", name(index)),
+        RecordsCommand::SetHold(signal, _) => format!("hold of {}", signal.name),
+        RecordsCommand::SetBand(_) => "band of the identification".to_owned(),
+        RecordsCommand::SetSearch(_) => "search of the identification".to_owned(),
+        RecordsCommand::SetReferences(_) => "references".to_owned(),
+        RecordsCommand::AddPart(index, _) => format!("part of {}", name(index)),
+        RecordsCommand::RemovePart(index) => format!("remove {}", name(index)),
+        _ => "records".to_owned(),
+    }
+}
+
+/// What the engineer says of the records of a condition; whether it changes anything.
+///
+/// # Errors
+/// In words: it cannot be.
+fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &RecordChannels) -> Result<bool, String> {
+    match command {
+        RecordsCommand::SetUsed(index, used) => return Ok(records.set_used(index, used)),
+        RecordsCommand::AddPart(index, part_s) => return records.add_part(index, part_s, channels).map(|()| true),
+        RecordsCommand::RemovePart(index) => return Ok(records.remove_part(index)),
+        RecordsCommand::SetKind(index, kind) => set(records.rows.get_mut(index), |row| row.guess.kind = kind),
         RecordsCommand::SetHeldOut(index, held_out) => {
             set(records.rows.get_mut(index), |row| row.guess.held_out = held_out);
         }
-        RecordsCommand::SetLayout(index, layout) => set_layout(records, index, &layout, channels),
         RecordsCommand::SetDelay(signal, delay_s) => {
             set(records.channel_mut(&signal), |channel| channel.delay_s = delay_s);
         }
@@ -348,36 +567,9 @@ fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &Recor
         RecordsCommand::SetBand(band) => records.band = band,
         RecordsCommand::SetSearch(search) => records.search = search,
         RecordsCommand::SetReferences(references) => records.references = references,
-        RecordsCommand::AddPart(index, part_s) => add_part(records, index, part_s, channels),
-        RecordsCommand::RemovePart(index) => {
-            if records.rows.get(index).is_some_and(|row| row.table.part_s.is_some()) {
-                records.rows.remove(index);
-                records.choose(records.chosen);
-            }
-        }
-        _ => return,
+        _ => return Ok(false),
     }
-    records.changed = true;
-}
-
-/// A part of a record as a record of its own behind it; the whole is no longer used, for evidence counts once.
-fn add_part(records: &mut ConditionRecords, index: usize, part_s: [f64; 2], channels: &RecordChannels) {
-    let Some(whole) = records.rows.get_mut(index) else { return };
-    let table = Arc::new(whole.table.part_of_time(part_s.map(|time_s| (100.0 * time_s).round() / 100.0)));
-    let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
-    whole.used &= whole.table.part_s.is_some();
-    let parts = records.rows[index + 1..].iter().take_while(|row| row.table.part_s.is_some()).count();
-    records.rows.insert(index + 1 + parts, part);
-}
-
-/// The columns of one record, and of all others that have columns of these names.
-fn set_layout(records: &mut ConditionRecords, index: usize, layout: &RecordLayout, channels: &RecordChannels) {
-    let Some(table) = records.rows.get(index).map(|row| Arc::clone(&row.table)) else { return };
-    for row in &mut records.rows {
-        let Some(carried) = layout.carried_to(&row.table, &table) else { continue };
-        let carried = carried.with_remedies_of(&row.layout);
-        *row = row.laid_out(carried, channels);
-    }
+    Ok(true)
 }
 
 /// Puts channels right in one record alone.
@@ -395,66 +587,137 @@ fn set_remedies(
     *row = row.laid_out(layout, channels);
 }
 
-fn row_of(table: RecordTable, channels: &RecordChannels) -> LaidOutRecord {
-    let (mut row, notes) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
+/// A record with its channels, as a dataset says of it where there is one that names it.
+fn row_of(table: RecordTable, channels: &RecordChannels, dataset: Option<&Dataset>) -> LaidOutRecord {
+    let time = TimeWish::default();
+    let (mut row, notes) = match dataset {
+        Some(dataset) => LaidOutRecord::as_dataset_says(table, channels, dataset, &time),
+        None => LaidOutRecord::proposed(table, channels, &time),
+    };
     if row.layout.is_resampled(&row.table, channels) {
         Arc::make_mut(&mut row.table).notes.extend(notes);
     }
     row
 }
 
-/// The records of a condition of the example that are inside the program.
-fn of_example(channels: &RecordChannels, id: ConditionId) -> Result<ReadRecords, FileError> {
-    let channels = &channels.clone().of_named_records();
-    let rows: Vec<LaidOutRecord> = example_records(id.0)?.into_iter().map(|table| row_of(table, channels)).collect();
-    Ok(ReadRecords { rows: BTreeMap::from([(id, rows)]), faults: Vec::new() })
-}
+impl OwnRecords {
+    /// Whether a condition may have records of its own.
+    fn has_some(&self, id: ConditionId) -> bool {
+        match &self.origin {
+            DatasetOrigin::EmbeddedExample => true,
+            DatasetOrigin::File(_) => !self.entries(id).is_empty(),
+        }
+    }
 
-/// The records that a dataset names.
-fn of_entries(
-    (channels, id): (&RecordChannels, ConditionId),
-    entries: &[ConditionRecord],
-    folder: &Path,
-    stop: &Arc<AtomicBool>,
-) -> ReadRecords {
-    let channels = &channels.clone().of_named_records();
-    let mut found = ReadRecords::default();
-    let mut left: Vec<&ConditionRecord> = entries.iter().collect();
-    // A file that holds many of them is read once.
-    while let Some(file) = left.first().map(|entry| entry.file.as_str()) {
-        let of_file: Vec<&ConditionRecord> = left.extract_if(.., |entry| entry.file == file).collect();
-        let variables: Vec<Option<&str>> = of_file.iter().map(|entry| entry.variable.as_deref()).collect();
-        let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
-        let tables = load_records(&folder.join(file), &variables, &budget);
-        found.faults.extend(tables.as_ref().err().map(ToString::to_string));
-        for (entry, table) in of_file.into_iter().zip(tables.into_iter().flatten()) {
-            match table {
-                Ok(table) => {
-                    let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
-                    found.rows.entry(id).or_default().push(row_of(table, channels).as_said(entry, channels));
+    fn entries(&self, id: ConditionId) -> &[ConditionRecord] {
+        self.dataset.condition(id).map_or(&[], |condition| condition.records())
+    }
+
+    /// Reads the records of conditions: those that the dataset names, or of the example those that are inside the program.
+    fn read(
+        &self,
+        ids: &[ConditionId],
+        channels: &RecordChannels,
+        stop: &Arc<AtomicBool>,
+        found: &mut ReadRecords,
+    ) -> Result<(), FileError> {
+        let channels = &channels.clone().of_named_records();
+        for id in ids {
+            let rows = found.own.entry(*id).or_default();
+            if self.origin == DatasetOrigin::EmbeddedExample {
+                rows.extend(example_records(id.0)?.into_iter().map(|table| row_of(table, channels, None)));
+            }
+        }
+        if let DatasetOrigin::File(path) = &self.origin {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            self.read_entries(ids, channels, folder, stop, found);
+        }
+        Ok(())
+    }
+
+    /// Reads the records that the dataset names; a file that holds many of them is read once.
+    fn read_entries(
+        &self,
+        ids: &[ConditionId],
+        channels: &RecordChannels,
+        folder: &Path,
+        stop: &Arc<AtomicBool>,
+        found: &mut ReadRecords,
+    ) {
+        let mut of_files: BTreeMap<&str, Vec<(ConditionId, &ConditionRecord)>> = BTreeMap::new();
+        for id in ids {
+            for entry in self.entries(*id) {
+                of_files.entry(&entry.file).or_default().push((*id, entry));
+            }
+        }
+        for (file, entries) in of_files {
+            let variables: Vec<Option<&str>> = entries.iter().map(|(_, entry)| entry.variable.as_deref()).collect();
+            let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
+            let path = folder.join(file);
+            let tables = match load_records(&path, &variables, &budget) {
+                Ok(tables) => tables,
+                Err(error) => {
+                    found.faults.push(error.to_string());
+                    continue;
                 }
-                Err(error) => found.faults.push(error.to_string()),
+            };
+            for ((id, entry), table) in entries.into_iter().zip(tables) {
+                match table {
+                    Ok(table) => {
+                        found.read_from.insert(table.source.sha256.clone(), real_path(&path));
+                        let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
+                        let row = row_of(table, channels, None).as_said(entry, channels);
+                        found.own.entry(id).or_default().push(row);
+                    }
+                    Err(error) => found.faults.push(error.to_string()),
+                }
             }
         }
     }
-    found
 }
 
-/// The records of files: each of the condition that its name says, or else of the one shown.
+/// A path that is the same however the file was named; as it is where the file system does not say.
+fn real_path(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+/// The file of a record among those that were asked for: one of them, or below one that is a folder.
+fn place_of(file: &str, asked: &[PathBuf]) -> Option<PathBuf> {
+    asked.iter().find_map(|path| {
+        let is_it = path.file_name().is_some_and(|name| name.to_string_lossy() == file);
+        let below = path.join(file);
+        if is_it {
+            Some(real_path(path))
+        } else if below.is_file() {
+            Some(real_path(&below))
+        } else {
+            None
+        }
+    })
+}
+
+/// The records of files: each of the condition that its name says, or else of the one shown; and with them those that belong to these
+/// conditions, where they are not known yet.
 fn of_files(
-    (dataset, channels): (&Dataset, &RecordChannels),
+    (own, channels): (&OwnRecords, &RecordChannels),
     shown: ConditionId,
     paths: &[PathBuf],
+    known: &BTreeSet<ConditionId>,
     progress: &Untold,
 ) -> Result<ReadRecords, FileError> {
     let read = read_records(paths, progress)?;
     let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
     found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
     for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
-        let row = row_of(table, channels);
-        let id = row.guess.condition_of(dataset).unwrap_or(shown);
-        found.rows.entry(id).or_default().push(row);
+        if let Some(path) = place_of(&table.source.file, paths) {
+            found.read_from.insert(table.source.sha256.clone(), path);
+        }
+        let row = row_of(table, channels, Some(&own.dataset));
+        let id = row.guess.condition_of(&own.dataset).unwrap_or(shown);
+        found.added.entry(id).or_default().push(row);
     }
+    let unknown: Vec<ConditionId> = found.added.keys().copied().filter(|id| !known.contains(id)).collect();
+    own.read(&unknown, channels, &progress.stop(), &mut found)?;
     Ok(found)
 }
 

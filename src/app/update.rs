@@ -6,6 +6,8 @@ use egui::ViewportCommand;
 use gdcm_core::message_text::{sanitized, shortened_message};
 
 use crate::view::plot::{FigureView, Pane};
+use crate::view::records::{RecordsBefore, RecordsState};
+use crate::view::state::State;
 use crate::view::views::PairSet;
 use crate::view::{
     Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field, leave_region,
@@ -59,9 +61,9 @@ impl GdcmApp {
         match command {
             Command::Edit(edit) => self.decide(&edit),
             Command::EndEdit => self.state.history.seal(),
-            Command::Undo => self.take_study(|history, study| history.undo(study)),
-            Command::Forget(edit) => self.take_study(|history, _| history.forget(&edit)),
-            Command::Redo => self.take_study(|history, study| history.redo(study)),
+            Command::Undo => self.take_study(|history, study, records| history.undo(study, |of| records.exchange(of))),
+            Command::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
+            Command::Redo => self.take_study(|history, study, records| history.redo(study, |of| records.exchange(of))),
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
@@ -217,9 +219,13 @@ impl GdcmApp {
         }
     }
 
-    /// Takes up another state of the study out of its history, where there is one.
-    fn take_study(&mut self, find: impl FnOnce(&mut History, &Study) -> Option<Study>) {
-        if let Some(study) = find(&mut self.state.history, &self.state.study) {
+    /// Takes up another state of the study, and of the records beside it, out of its history, where there is one.
+    fn take_study(
+        &mut self,
+        find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
+    ) {
+        let State { history, study, records, .. } = &mut self.state;
+        if let Some(study) = find(history, study, records) {
             self.state.study = study;
             self.study_changed();
         }

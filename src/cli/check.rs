@@ -5,7 +5,7 @@ use std::path::Path;
 
 use gdcm_core::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
 use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::{Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
+use gdcm_core::study::{ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 use gdcm_core::units::number;
 use gdcm_files::{
     ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults, holds_models,
@@ -81,7 +81,10 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let cautions = cautions_of_models(study, &execution)?;
     let cautions = cautions.into_iter().map(|(id, caution)| (id, caution.words(|pair| study.dataset.pair_name(pair))));
     let cautions = by_words(cautions).into_iter().map(|(conditions, words)| of_conditions(&conditions, &words));
-    Ok(doubts.chain(cautions).map(|words| caution_line(&words)).collect())
+    let without = study.dataset.without_reference();
+    let no_reference =
+        (!without.is_empty()).then(|| of_conditions(&without, &ConditionFailure::NoReference.to_string()));
+    Ok(no_reference.into_iter().chain(doubts).chain(cautions).map(|words| caution_line(&words)).collect())
 }
 
 fn caution_line(words: &str) -> String {

@@ -217,9 +217,9 @@ fn tasks(
     channels: &mut RecordChannels,
     band: Band,
 ) -> Result<Tasks, Failure> {
-    let ReadRecords { mut records, unread, reading, copies } =
+    let ReadRecords { mut records, unread, reading, copies, wholes } =
         laid_out(arguments, channels, destination.map(|of| of.dataset.as_ref()))?;
-    hold_out(&arguments.hold_out, &mut records)?;
+    hold_out(&arguments.hold_out, &mut records, &wholes)?;
     put_right(arguments, &mut records, channels)?;
     let mut preparation = arguments.preparation(channels)?;
     hold(&mut preparation, &records, channels);

@@ -10,6 +10,7 @@ use gdcm_core::dataset::{Band, Dataset};
 use gdcm_core::identification::{ChannelPreparation, Preparation, SearchSpace};
 use gdcm_core::records::{ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion};
 use gdcm_core::study::OfferedModels;
+use gdcm_core::units::number;
 
 use super::arguments::{OfChannel, real_number, whole_number};
 use super::terminal::Failure;
@@ -48,7 +49,7 @@ pub struct IdentifyArguments {
     /// An input that acts as it was logged until its next sample (sample and hold); may be repeated.
     #[arg(long, value_name = "CHANNEL")]
     pub held: Vec<String>,
-    /// A part of the records, from A to B seconds on their own clock, is a record of its own; of one record alone with its name before (RECORD:A:B); may be repeated, and --hold-out A:B holds one out.
+    /// A part of the records, from A to B seconds on their own clock, or as +A:+B from their start, is a record of its own; of one record alone with its name before (RECORD:A:B); may be repeated, and --hold-out A:B holds one out.
     #[arg(long, value_name = "A:B", value_parser = record_part, allow_hyphen_values = true)]
     pub part: Vec<RecordPart>,
     /// Samples in a second, in place of a column of the time.
@@ -310,23 +311,45 @@ fn positive_rate(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A part of a record, by its own clock.
+/// A part of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordPart {
     /// The record; none for all that hold some of that time.
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],
+    /// Whether the times count from the first sample of the record, not on its own clock.
+    pub is_from_start: bool,
+}
+
+impl RecordPart {
+    /// First and last time \[s\] on the clock of a record that starts at `start_s`.
+    pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
+        if self.is_from_start { self.part_s.map(|time_s| start_s + time_s) } else { self.part_s }
+    }
+
+    /// The times as they were given: `5:34`, `+5:+34`.
+    pub(super) fn words(&self) -> String {
+        let sign = if self.is_from_start { "+" } else { "" };
+        let [from, to] = self.part_s.map(number);
+        format!("{sign}{from}:{sign}{to}")
+    }
 }
 
 pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
-    let expected = || format!("expected A:B, as 29:58, or RECORD:A:B, with A less than B, found \"{text}\"");
+    let expected = || {
+        format!(
+            "expected A:B, as 29:58, or +A:+B from the start of a record, or RECORD:A:B, with A less than B, found \"{text}\""
+        )
+    };
     let (rest, to) = text.rsplit_once(':').ok_or_else(expected)?;
     let (record, from) = rest.rsplit_once(':').map_or((None, rest), |(record, from)| (Some(record.trim()), from));
-    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let [from, to] = [from, to].map(str::trim);
+    let is_from_start = from.starts_with('+');
+    let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
     match number(from).zip(number(to)) {
-        Some((from, to)) if from < to && record != Some("") => {
-            Ok(RecordPart { record: record.map(ToOwned::to_owned), part_s: [from, to] })
+        Some((first, last)) if first < last && record != Some("") && is_from_start == to.starts_with('+') => {
+            Ok(RecordPart { record: record.map(ToOwned::to_owned), part_s: [first, last], is_from_start })
         }
         _ => Err(expected()),
     }
@@ -351,9 +374,15 @@ mod tests {
 
     #[test]
     fn a_part_is_of_all_records_or_of_one() {
-        assert_eq!(record_part("29:58"), Ok(RecordPart { record: None, part_s: [29.0, 58.0] }));
-        assert_eq!(record_part("log:1:-1:5"), Ok(RecordPart { record: Some("log:1".into()), part_s: [-1.0, 5.0] }));
-        assert!(["29", "58:29", "5:5", ":1:2", "a:b", "0:inf"].iter().all(|wrong| record_part(wrong).is_err()));
+        let part = |record: Option<&str>, part_s, is_from_start| {
+            Ok(RecordPart { record: record.map(str::to_owned), part_s, is_from_start })
+        };
+        assert_eq!(record_part("29:58"), part(None, [29.0, 58.0], false));
+        assert_eq!(record_part("log:1:-1:5"), part(Some("log:1"), [-1.0, 5.0], false));
+        assert_eq!(record_part("prbs: +5 : +34"), part(Some("prbs"), [5.0, 34.0], true));
+        assert_eq!(record_part("+5:+34").unwrap().on_clock_s(42.3), [47.3, 76.3]);
+        let wrong = ["29", "58:29", "5:5", ":1:2", "a:b", "0:inf", "+5:34", "5:+34", "++5:+34", "+5:-34"];
+        assert!(wrong.iter().all(|wrong| record_part(wrong).is_err()));
         assert!(positive_rate("50") == Ok(50.0) && ["0", "-1", "x"].iter().all(|wrong| positive_rate(wrong).is_err()));
         assert_eq!(channel_topic("P = a.b[0]"), Ok(OfChannel { channel: "P".into(), said: "a.b[0]".into() }));
     }

@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use gdcm_core::assembly::{Assembly, Headings, Rules, proposed_rules};
 use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::Table;
+use gdcm_core::study::{ConditionFailure, Table};
 use gdcm_core::units::number;
 use gdcm_files::{
     EVERY_TABLE, FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
@@ -16,7 +16,7 @@ use gdcm_files::{
 
 use super::arguments::{AssembleArguments, ConvertArguments, FileSign};
 use super::existing;
-use super::terminal::{Failure, caution, error, indented, note, progress_target, say};
+use super::terminal::{Failure, caution, coded_caution, error, indented, note, progress_target, say};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -98,6 +98,11 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let folder = relative_folder(sources_folder(&arguments.folders), &arguments.out);
     let dataset = assembly.dataset(&folder);
     if let Some(dataset) = &dataset {
+        let without = dataset.without_reference();
+        if !without.is_empty() {
+            let failure = ConditionFailure::NoReference;
+            coded_caution(Some(failure.code()), &without, &failure.to_string());
+        }
         add_dataset(dataset, &arguments.out, &mut outputs)?;
     }
     outputs.persist()?;

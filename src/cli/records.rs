@@ -5,15 +5,15 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
+use gdcm_core::dataset::{Band, ConditionId, Dataset};
 use gdcm_core::identification::{CautionNote, Preparation};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::records::{
-    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordTable, SaidConversion, TimeWish,
+    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordSource, RecordTable, SaidConversion, TimeWish,
     leave_out_copies, median_step, with_topics_joined,
 };
 use gdcm_core::study::{Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of};
-use gdcm_core::units::telling;
+use gdcm_core::units::{number, telling};
 use gdcm_files::{FoundRecords, read_records};
 
 use super::arguments::OfChannel;
@@ -32,6 +32,24 @@ pub(super) struct ReadRecords {
     pub(super) reading: Vec<String>,
     /// Records that are others under second names: the name of the other, and what is said.
     pub(super) copies: Vec<(String, CautionNote)>,
+    /// The records that parts were asked of, with their spans.
+    pub(super) wholes: Vec<WholeRecord>,
+}
+
+/// A record of which a part was asked for.
+pub(super) struct WholeRecord {
+    name: String,
+    source: RecordSource,
+    /// First and last time \[s\] on its own clock.
+    span_s: [f64; 2],
+}
+
+impl WholeRecord {
+    /// "prbs runs from 42.30 s to 81.30 s".
+    fn words(&self) -> String {
+        let [first, last] = self.span_s.map(|time_s| telling(time_s, 2));
+        format!("{} runs from {first} s to {last} s", self.name)
+    }
 }
 
 /// Reads the records; what was chosen, and what is wrong, is told on standard error.
@@ -46,7 +64,14 @@ pub(super) fn laid_out(
     let (mut reading, mut wrong): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let units_are_known = channels.inputs.iter().chain(&channels.outputs).all(|rule| !rule.unit.is_empty());
     let tables = with_topics_joined(tables, channels, &wish);
-    for table in parts(tables, &arguments.part)? {
+    let mut wholes = Vec::new();
+    let tables = if arguments.part.is_empty() {
+        tables
+    } else {
+        let lay_out = |table: &RecordTable| as_dataset_says(table.clone(), channels, dataset, &wish).0;
+        parts(tables, &arguments.part, lay_out, &mut wholes)?
+    };
+    for table in tables {
         let (record, notes) = as_dataset_says(table, channels, dataset, &wish);
         // A part is of those records that have samples then.
         if record.table.part_s.is_some() && record.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
@@ -74,10 +99,9 @@ pub(super) fn laid_out(
         channels.take_units(&record.layout, &record.table);
         records.push(record);
     }
-    let has = |part_s| records.iter().any(|record| record.table.part_s == Some(part_s));
-    if let Some(part) = arguments.part.iter().find(|part| !has(part.part_s)) {
-        let [from, to] = part.part_s;
-        return Err(Failure::option("--part", format!("no record has samples from {from} to {to} s on its own clock")));
+    let has_samples = |part: &&RecordPart| records.iter().any(|record| is_part(&record.table, part, &wholes));
+    if let Some(part) = arguments.part.iter().find(|part| !has_samples(part)) {
+        return Err(Failure::option("--part", no_samples(part, &wholes)));
     }
     // By the units that the channels have by now: a record before the first that says them may say none.
     let by_units = |record: LaidOutRecord| {
@@ -102,49 +126,101 @@ pub(super) fn laid_out(
     if wrong > 0 {
         Err(Failure::Records { wrong, of: records.len() })
     } else {
-        Ok(ReadRecords { records, unread, reading, copies })
+        Ok(ReadRecords { records, unread, reading, copies, wholes })
     }
 }
 
-/// A record with its channels. One that the dataset itself names is as that says: in its units where the file says none, times the
-/// factors and less the delays that it keeps, but for what the command line says of the samples of a channel.
+/// A record with its channels, which is as the dataset says of it where there is one that names it; used, for it was asked for.
 fn as_dataset_says(
     table: RecordTable,
     channels: &RecordChannels,
     dataset: Option<&Dataset>,
     wish: &TimeWish,
 ) -> (LaidOutRecord, Vec<String>) {
-    let Some((_, entry)) = dataset.and_then(|dataset| entry_of_dataset(dataset, &table)) else {
-        return LaidOutRecord::proposed(table, channels, wish);
-    };
-    let channels = channels.clone().of_named_records();
-    let (record, mut notes) = LaidOutRecord::proposed(table, &channels, wish);
-    let kept = |(name, remedy): (&String, &ChannelRemedy)| {
-        let factor = if channels.said.contains_key(name) { 1.0 } else { remedy.factor };
-        (name.clone(), ChannelRemedy { factor, ..*remedy })
-    };
-    let remedies = entry.remedies.iter().map(kept).filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect();
-    let words = |(name, remedy): (&String, &ChannelRemedy)| {
-        format!("{name}: times {}, {} s taken out, as the dataset says of this record", remedy.factor, remedy.delay_s)
-    };
-    let entry = ConditionRecord { remedies, used: true, ..entry.clone() };
-    notes.extend(entry.remedies.iter().map(words));
-    (record.as_said(&entry, &channels), notes)
+    match dataset {
+        Some(dataset) => {
+            let (record, notes) = LaidOutRecord::as_dataset_says(table, channels, dataset, wish);
+            (LaidOutRecord { used: true, ..record }, notes)
+        }
+        None => LaidOutRecord::proposed(table, channels, wish),
+    }
 }
 
-/// The parts asked for, in place of the records that they are of.
-fn parts(tables: Vec<RecordTable>, asked: &[RecordPart]) -> Result<Vec<RecordTable>, Failure> {
-    let mut found = Vec::new();
-    for RecordPart { record, part_s } in asked {
-        let before = found.len();
-        let of_record = tables.iter().filter(|table| record.as_ref().is_none_or(|wanted| is_called(table, wanted)));
-        found.extend(of_record.map(|table| table.part_of_time(*part_s)));
-        if found.len() == before {
-            let record = record.as_deref().unwrap_or_default();
+/// The parts asked for, in place of the records that they are of, which are added to `wholes`. A record whose columns are not clear
+/// stands for its parts, for its problems to be told.
+fn parts(
+    tables: Vec<RecordTable>,
+    asked: &[RecordPart],
+    lay_out: impl Fn(&RecordTable) -> LaidOutRecord,
+    wholes: &mut Vec<WholeRecord>,
+) -> Result<Vec<RecordTable>, Failure> {
+    let mut found: Vec<RecordTable> = Vec::new();
+    for part in asked {
+        let mut is_called_so = false;
+        for table in &tables {
+            if !part.record.as_ref().is_none_or(|wanted| is_called(table, wanted)) {
+                continue;
+            }
+            is_called_so = true;
+            let known = wholes.iter().find(|whole| whole.source == table.source).map(|whole| whole.span_s);
+            match known.or_else(|| lay_out(table).span_s()) {
+                Some(span_s) => {
+                    if known.is_none() {
+                        let (name, source) = (table.name.clone(), table.source.clone());
+                        wholes.push(WholeRecord { name, source, span_s });
+                    }
+                    found.push(table.part_of_time(part.on_clock_s(span_s[0])));
+                }
+                None if found.iter().any(|other| other.source == table.source) => {}
+                None => found.push(table.clone()),
+            }
+        }
+        if !is_called_so {
+            let record = part.record.as_deref().unwrap_or_default();
             return Err(Failure::option("--part", format!("\"{record}\" is none of the records")));
         }
     }
-    Ok(if asked.is_empty() { tables } else { found })
+    Ok(found)
+}
+
+/// Whether a record is a part that was asked for, of any record that is called so; one whose columns are not clear is every part.
+fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
+    if !part.record.as_ref().is_none_or(|record| is_called(table, record) || is_called_before_part(table, record)) {
+        return false;
+    }
+    match wholes.iter().find(|whole| whole.source == table.source) {
+        Some(whole) => table.part_s == Some(part.on_clock_s(whole.span_s[0])),
+        None => true,
+    }
+}
+
+/// Whether a part is one of the record called so: its name is that of the record with the times behind it.
+fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
+    table.part_s.is_some() && table.name.strip_prefix(wanted).is_some_and(|rest| rest.starts_with(", "))
+}
+
+/// Why a part is none: where the records are that it was asked of.
+fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
+    /// Most records whose spans are told.
+    const MOST: usize = 4;
+    let is_asked = |whole: &&WholeRecord| {
+        let table = RecordTable { source: whole.source.clone(), ..RecordTable::new(whole.name.clone(), Vec::new()) };
+        part.record.as_ref().is_none_or(|record| is_called(&table, record))
+    };
+    let spans: Vec<String> = wholes.iter().filter(is_asked).map(WholeRecord::words).collect();
+    let more = spans.len().saturating_sub(MOST);
+    let more = if more == 0 { String::new() } else { format!("; {more} more") };
+    let shown = spans[..spans.len().min(MOST)].join("; ");
+    let asked = part.words();
+    if part.is_from_start {
+        return format!("no record has samples at {asked} s from its start: {shown}{more}");
+    }
+    let [from, to] = part.part_s;
+    let mut words = format!("no record has samples at {asked} s on its own clock: {shown}{more}");
+    if from >= 0.0 {
+        words += &format!(" (--part +{}:+{} counts from the start of a record)", number(from), number(to));
+    }
+    words
 }
 
 /// Whether a record is called so: by its file, its name, or its name in its file.
@@ -162,25 +238,30 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
     if found.tables.is_empty() { Err(Failure::nothing_in(paths, "record")) } else { Ok(found) }
 }
 
-/// Holds out the records asked for; without a word those whose names say so stay held out.
-pub(super) fn hold_out(wanted: &[String], records: &mut [LaidOutRecord]) -> Result<(), Failure> {
+/// Holds out the records asked for, or parts of `wholes`; without a word those whose names say so stay held out.
+pub(super) fn hold_out(
+    wanted: &[String],
+    records: &mut [LaidOutRecord],
+    wholes: &[WholeRecord],
+) -> Result<(), Failure> {
     if !wanted.is_empty() {
         records.iter_mut().for_each(|record| record.guess.held_out = false);
     }
     for wanted in wanted {
         let part = record_part(wanted).ok();
-        let is_part = |table: &RecordTable| {
-            part.as_ref().is_some_and(|RecordPart { record, part_s }| {
-                table.part_s == Some(*part_s) && record.as_ref().is_none_or(|record| is_called(table, record))
-            })
-        };
-        let is_it = |record: &&mut LaidOutRecord| is_called(&record.table, wanted) || is_part(&record.table);
-        let mut found = records.iter_mut().filter(is_it).peekable();
-        if found.peek().is_none() {
+        let mut is_found = false;
+        for record in records.iter_mut() {
+            let table = &record.table;
+            let is_of_part = |part: &RecordPart| table.part_s.is_some() && is_part(table, part, wholes);
+            if is_called(table, wanted) || part.as_ref().is_some_and(is_of_part) {
+                record.guess.held_out = true;
+                is_found = true;
+            }
+        }
+        if !is_found {
             let reason = format!("\"{wanted}\" is none of the records; give its file among them too");
             return Err(Failure::option("--hold-out", reason));
         }
-        found.for_each(|record| record.guess.held_out = true);
     }
     Ok(())
 }
@@ -275,7 +356,7 @@ fn record_of(
     channels: &RecordChannels,
     unread: &mut Vec<String>,
 ) -> Option<(ConditionId, LaidOutRecord)> {
-    let entry = entry_of_dataset(dataset, &table);
+    let entry = table.entry_of_dataset(dataset);
     let named = entry.map(|_| channels.clone().of_named_records());
     let channels = named.as_ref().unwrap_or(channels);
     let (record, _) = LaidOutRecord::proposed(table, channels, &TimeWish::default());
@@ -298,17 +379,6 @@ fn record_of(
     }
     record.used_flight()?;
     Some((condition, record))
-}
-
-/// What a dataset says of a record, and the condition: by its name in a file of the same name, or in an archive of another.
-fn entry_of_dataset<'d>(dataset: &'d Dataset, table: &RecordTable) -> Option<(ConditionId, &'d ConditionRecord)> {
-    let file_name = |file: &str| Path::new(file).file_name().map(ToOwned::to_owned);
-    let is_it = |entry: &&ConditionRecord| {
-        let same_file = file_name(&entry.file) == file_name(&table.source.file);
-        let same_name = entry.variable.is_some() && entry.name == table.name;
-        (same_file || same_name) && entry.variable == table.source.variable && entry.part_s.is_none()
-    };
-    dataset.conditions().iter().find_map(|of| Some((of.id(), of.records().iter().find(is_it)?)))
 }
 
 /// Tells of which record this is another under a second name, and gives that with the words.

@@ -5,12 +5,12 @@ use std::sync::Arc;
 use gdcm_core::correction;
 use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_core::message_text::sanitized;
-use gdcm_core::study::{Analysis, Edit, Engine, RequirementSettings, Study};
+use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
 use gdcm_files::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;
-use super::terminal::{Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions};
+use super::terminal::{Failure, TerminalProgress, by_words, caution, coded_caution, listed_conditions, of_conditions};
 use super::{existing, open};
 use crate::executor::Pool;
 
@@ -62,13 +62,16 @@ pub(super) fn analysis_of(
         analysis.coupling_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
-    let failures =
-        analysis.conditions.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?.to_string())));
-    let failures: Vec<(ConditionId, String)> = failures.collect();
-    if let Some((id, first)) = failures.first().filter(|_| failures.len() == analysis.conditions.len()) {
-        return Err(Failure::NoResult { reason: format!("condition {id}: {first}") });
+    let failures = analysis.conditions.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?)));
+    let failures: Vec<(ConditionId, &ConditionFailure)> = failures.collect();
+    let told = by_words(failures.iter().map(|(id, failure)| (*id, failure.to_string())));
+    if let Some((conditions, first)) = told.first().filter(|_| failures.len() == analysis.conditions.len()) {
+        return Err(Failure::NoResult { reason: of_conditions(conditions, first) });
     }
-    by_words(failures).iter().for_each(|(conditions, words)| caution_of(conditions, words));
+    for (conditions, words) in &told {
+        let of_words = failures.iter().find(|(id, _)| conditions.contains(id));
+        coded_caution(of_words.map(|(_, failure)| failure.code()), conditions, words);
+    }
     Ok((analysis, engine))
 }
 

@@ -25,7 +25,8 @@ pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     region_ui(ui, Region::Models, |ui| {
         let is_open = state.display.identified_open;
         let room = ui.available_height();
-        let models = state.condition().bundle(BundleKind::Identified).len() as f32;
+        // One line says that there is none.
+        let models = state.condition().bundle(BundleKind::Identified).len().max(1) as f32;
         let height = if is_open { (FOLD + ROW_HEIGHT * models + 8.0).min(0.5 * room) } else { FOLD };
         ui.spacing_mut().item_spacing.y = 0.0;
         let (above, below) = ui.available_rect_before_wrap().split_top_bottom_at_y(ui.max_rect().bottom() - height);
@@ -106,6 +107,9 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
     painted_text(ui, row, 16.0, "Identified models", medium(BODY_SIZE), palette.text);
     let models = state.condition().bundle(BundleKind::Identified);
     let mut words = state.kept_words(BundleKind::Identified);
+    if models.is_empty() {
+        words = "none yet".to_owned();
+    }
     let name = state.shown().map(|shown| shown.representative_name(BundleKind::Identified));
     let order = models.iter().find(|model| Some(model.name.as_str()) == name).and_then(Model::order);
     if let Some(order) = order {
@@ -123,6 +127,10 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
 
 fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
     let models = state.condition().bundle(kind);
+    if models.is_empty() {
+        ui.add(egui::Label::new(palette.small("No identified models yet: identify them from flight records")).wrap());
+        return;
+    }
     let trims = TrimColumns::of(models).filter(|_| kind == BundleKind::Physics);
     if kind == BundleKind::Physics {
         heads_ui(ui, trims.as_ref(), palette);

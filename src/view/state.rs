@@ -18,7 +18,7 @@ use gdcm_files::ExportFormat;
 use gdcm_files::figure::ColumnWidth;
 
 use super::assembling::AssemblyState;
-use super::records::RecordsState;
+use super::records::{RecordsBefore, RecordsState};
 use super::views::{all_records, assessed_correction, assessment_choice};
 use super::{Bar, Display, FormKind, PaletteForm, View};
 
@@ -101,7 +101,7 @@ pub struct State {
     /// The dataset that what is shown is of.
     followed: Arc<Dataset>,
     /// What undo goes back over.
-    pub history: History,
+    pub history: History<RecordsBefore>,
     /// Name of the study's file, or what stands for it.
     pub study_name: String,
     /// Whether there are decisions that are not saved.

@@ -4,7 +4,8 @@ use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy};
 use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_core::response::median;
 use gdcm_core::study::{
-    ConditionAnalysis, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole, Value, setting,
+    ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole,
+    Value, setting,
 };
 use gdcm_core::units::{number, s_to_ms, signed, telling};
 
@@ -97,6 +98,10 @@ impl Verdict {
         };
         match state.outcome() {
             None => nothing(state.results.absence().to_owned(), Vec::new()),
+            Some(Err(failure @ ConditionFailure::NoReference)) => {
+                let identify = Step::new("Identify from records", Command::ShowView(View::Records));
+                Self { caution: Some(failure.to_string()), ..nothing("no reference yet".to_owned(), vec![identify]) }
+            }
             Some(Err(failure)) => {
                 Self { caution: Some(failure.to_string()), ..nothing("no result".to_owned(), Vec::new()) }
             }

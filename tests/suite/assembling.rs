@@ -485,3 +485,34 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
         assert_eq!(made.conditions()[1].records(), []);
     }
 }
+
+#[test]
+fn a_folder_without_identified_models_makes_a_dataset_that_says_what_it_needs_next() {
+    let folder = tempfile::tempdir().unwrap();
+    let models = folder.path().join("models");
+    foreign_tree(&models);
+    for entry in walk(&models) {
+        if entry.file_name().unwrap().to_string_lossy().starts_with("flight_") {
+            std::fs::remove_file(entry).unwrap();
+        }
+    }
+    let out = folder.path().join("made.json");
+    let ended = run(&["assemble", models.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let said: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
+    let of_code: Vec<_> =
+        said["cautions"].as_array().unwrap().iter().filter(|caution| caution["code"] == "no-reference").collect();
+    assert_eq!((of_code.len(), &of_code[0]["conditions"]), (1, &json!([1, 3])));
+    let dataset = load_dataset(&out).unwrap().dataset;
+    assert!(dataset.conditions().iter().all(|condition| !condition.has_reference()));
+}
+
+/// Every file below a folder.
+fn walk(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() { files.extend(walk(&path)) } else { files.push(path) }
+    }
+    files
+}

@@ -476,3 +476,92 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     let wholes: Vec<_> = entries.iter().filter(|record| record.part_s.is_none()).map(|record| record.used).collect();
     assert_eq!(wholes, [false, false, true, true]);
 }
+
+/// Channels of `prbs.csv`, whose clock starts at 42.3 s.
+const PRBS: [&str; 9] = ["identify", "prbs.csv", "--inputs", "M", "--outputs", "q", "--band", "2", "25"];
+
+/// A desk with the flight of the quadrotor, its clock starting at 42.3 s.
+fn desk_of_prbs() -> Desk {
+    let desk = Desk::new();
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.csv")).unwrap();
+    let mut lines = text.lines();
+    let mut moved = lines.next().unwrap().to_owned() + "\n";
+    let mut start_s = None;
+    for line in lines {
+        let (time_s, rest) = line.split_once(',').unwrap();
+        let time_s: f64 = time_s.parse().unwrap();
+        let start_s = *start_s.get_or_insert(time_s);
+        moved += &format!("{:.6},{rest}\n", 42.3 + time_s - start_s);
+    }
+    fs::write(desk.path("prbs.csv"), moved).unwrap();
+    desk
+}
+
+#[test]
+fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_its_start_is_taken() {
+    let desk = desk_of_prbs();
+    let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
+    let ended = identified(&["--part", "5:34", "--out", "none"]);
+    assert_eq!(ended.status, 2, "{ended:?}");
+    let line = ended.error.lines().find(|line| line.starts_with("error:")).unwrap();
+    assert!(line.contains("--part") && line.contains("prbs runs from 42.30 s to "), "{line}");
+    assert!(line.contains("--part +5:+34 counts from the start of a record"), "{line}");
+    assert!(!desk.path("none").exists());
+    let ended = identified(&["--part", "+500:+534", "--out", "none"]);
+    assert!(ended.status == 2 && ended.error.contains("prbs runs from 42.30 s to "), "{ended:?}");
+    let ended = identified(&["--part", "+5:34", "--out", "none"]);
+    assert!(ended.status == 2 && ended.error.contains("expected A:B"), "{ended:?}");
+
+    // From its start, by the record's name and held out by the same words.
+    let parts = ["--part", "prbs:+0:+15", "--part", "+15:+30", "--hold-out", "+15:+30", "--out", "relative"];
+    let ended = identified(&parts);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let records = crate::read_json(&desk.path("relative/identified.json"))["records"].clone();
+    let part = |at: usize, end: usize| records[at]["part_s"][end].as_f64().unwrap();
+    for (at, expected) in [(0, [42.3, 57.3]), (1, [57.3, 72.3])] {
+        assert!((0..2).all(|end| (part(at, end) - expected[end]).abs() < 1e-9), "{records}");
+    }
+    assert_eq!([&records[0]["held_out"], &records[1]["held_out"]], [&json!(false), &json!(true)]);
+    // The same as on its own clock.
+    let ended = identified(&["--part", "42.3:57.3", "--part", "57.3:72.3", "--hold-out", "57.3:72.3", "--out", "own"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let models = |out: &str| crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
+    assert_eq!(models("relative"), models("own"));
+}
+
+#[test]
+fn models_are_identified_into_a_dataset_that_has_none_yet() {
+    let desk = Desk::new();
+    late_dataset(&desk.path("."));
+    let mut dataset = crate::read_json(&desk.path("late.json"));
+    for condition in dataset["conditions"].as_array_mut().unwrap() {
+        condition.as_object_mut().unwrap().remove("identified_models");
+    }
+    fs::write(desk.path("late.json"), dataset.to_string()).unwrap();
+    // Without any reference there is no result, and it is said what is needed.
+    let ended = desk.gdcm(&["analyze", "late.json", "--out", "results"]);
+    assert_eq!(ended.status, 1, "{ended:?}");
+    assert!(ended.error.contains("conditions 7, 10: no identified models yet"), "{ended:?}");
+    let ended = desk.gdcm(&["check", "late.json"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    assert!(ended.out.contains("conditions 7, 10: no identified models yet"), "{ended:?}");
+    let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
+    let into = ["--into", "late.json", "--condition", "7", "--band", "0.5", "9", "--out", "out"];
+    let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let written = load_dataset(&desk.path("out/late.json")).unwrap().dataset;
+    let [filled, empty] = written.conditions() else { panic!("two conditions") };
+    assert!(filled.has_reference() && !empty.has_reference());
+    // One condition is analysed; of the other it is said that it has no reference.
+    let ended = desk.gdcm(&["analyze", "out/late.json", "--out", "results", "--json"]);
+    assert_eq!(ended.status, 0, "{ended:?}");
+    let said: Value = serde_json::from_str(&ended.out).unwrap();
+    let of_code = said["cautions"].as_array().unwrap().iter().filter(|caution| caution["code"] == "no-reference");
+    assert_eq!(of_code.map(|caution| caution["conditions"].clone()).collect::<Vec<_>>(), [json!([10])]);
+    let corrections = crate::read_json(&desk.path("results/corrections.json"));
+    assert_eq!(
+        [&corrections["failed"][0]["id"], &corrections["failed"][0]["code"]],
+        [&json!(10), &json!("no-reference")]
+    );
+    assert_eq!(corrections["conditions"].as_array().unwrap().len(), 1);
+}

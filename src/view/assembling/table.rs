@@ -137,6 +137,13 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
         count => format!("{count} items to complete"),
     };
     ui.label(RichText::new(heading).strong().color(if problems.is_empty() { palette.text } else { palette.warning }));
+    let without = assembly.without_reference();
+    if problems.is_empty() && !without.is_empty() {
+        let ids = without.iter().map(i64::to_string).collect::<Vec<_>>().join(", ");
+        let words =
+            format!("No identified models yet of conditions {ids}: identify them from flight records afterwards");
+        ui.add(Label::new(palette.small(words)).wrap());
+    }
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
         for (part, words) in problems.iter().take(MOST_LINES) {
             let text = RichText::new(words).size(SMALL_SIZE).color(palette.text);

@@ -11,7 +11,8 @@ use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_core::dataset::Band;
 use gdcm_core::executor::Sequential;
 use gdcm_core::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
-use gdcm_core::records::{ModeSpan, Spectrogram};
+use gdcm_core::records::{LaidOutRecord, ModeSpan, Spectrogram};
+use gdcm_core::units::telling;
 
 use super::{ConditionRecords, Page, RecordsCommand, numbers, simulated, time_models_ui};
 
@@ -36,6 +37,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         time_models_ui(ui, state, palette, commands);
         spectrogram_choice_ui(ui, page, commands);
         part_ui(ui, page, commands);
+        span_ui(ui, records, palette);
     });
     if let Some((part_s, has_ended)) = chosen_stretch(ui, charts()) {
         gaps.push(ChartSpan { ends: part_s, color: palette.accent.gamma_multiply(0.35) });
@@ -102,11 +104,13 @@ fn charts() -> Id {
 fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &mut Vec<Command>) {
     ui.label(palette.small("part [s]"));
     let text = entry_ui(ui, "Part of the record", "", "from to", 70.0);
+    let span_s = records.rows.get(records.chosen).and_then(LaidOutRecord::span_s);
     if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
-        commands.push(match numbers(&text).as_deref() {
-            Ok([from, to]) if from < to => RecordsCommand::AddPart(records.chosen, [*from, *to]).into(),
-            _ => Command::Refuse(format!(
-                "a part: expected two times in s, the earlier first, as in \"12 40\", found \"{text}\""
+        commands.push(match part_of(&text, span_s) {
+            Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
+            None => Command::Refuse(format!(
+                "a part: expected two times in s, the earlier first, as in \"12 40\", or \"+5 +34\" from the start of the record, \
+                 found \"{text}\""
             )),
         });
     }
@@ -115,6 +119,32 @@ fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &m
     if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
         commands.push(RecordsCommand::ChooseParts(chooses).into());
     }
+}
+
+/// The part that is typed: two times on the clock of the record, or with `+` before both from its start.
+fn part_of(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let [from, to] = numbers(text).ok()?[..] else { return None };
+    let signs = text.split_whitespace().filter(|time| time.starts_with('+')).count();
+    let start_s = match signs {
+        0 => 0.0,
+        2 => span_s?[0],
+        _ => return None,
+    };
+    let part_s: [f64; 2] = [start_s + from, start_s + to];
+    (part_s[0] < part_s[1]).then_some(part_s)
+}
+
+/// From when to when the record shown runs, on its own clock and from the start of the whole record.
+fn span_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
+    let Some(row) = records.rows.get(records.chosen) else { return };
+    let Some(span_s) = row.span_s() else { return };
+    let is_whole = |other: &&LaidOutRecord| other.table.part_s.is_none() && other.table.source == row.table.source;
+    let whole_s = records.rows.iter().find(is_whole).and_then(LaidOutRecord::span_s);
+    let start_s = whole_s.unwrap_or(span_s)[0];
+    let [from, to] = span_s.map(|time_s| telling(time_s, 2));
+    let [first, last] = span_s.map(|time_s| telling(time_s - start_s, 2));
+    let words = format!("runs from {from} s to {to} s on its clock, +{first} s to +{last} s from its start");
+    ui.add(Label::new(palette.small(words)).truncate());
 }
 
 /// Whether a spectrogram is shown, and of which input.

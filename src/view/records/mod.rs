@@ -36,7 +36,9 @@ use records_state::Page;
 use response::{identified_poles_ui, response_ui, stabilisation_ui};
 use simulation::{fit_ui, simulated, time_models_ui};
 
-pub use records_state::{ConditionRecords, RecordsCommand, RecordsPage, RecordsState, WantedDataset};
+pub use records_state::{
+    AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, RecordsState, WantedDataset,
+};
 pub use simulation::{TimeModel, simulation_jobs};
 
 /// Width of the list \[pt\].
@@ -137,6 +139,8 @@ fn source_ui(ui: &mut Ui, state: &State, path: &mut String, palette: &Palette, c
             ui.label(palette.small(format!("reading {reading}")));
         });
     }
+    open_units_ui(ui, state, palette, commands);
+    all_conditions_ui(ui, state, commands);
     let records = state.records.conditions.get(&state.condition().id());
     if records.is_some_and(|of| of.rows.iter().any(|row| row.problems.iter().any(LayoutProblem::is_missing))) {
         ui.horizontal_wrapped(|ui| {
@@ -147,6 +151,39 @@ fn source_ui(ui: &mut Ui, state: &State, path: &mut String, palette: &Palette, c
     }
     for fault in &state.records.faults {
         ui.add(Label::new(palette.small_warning(fault)).wrap());
+    }
+}
+
+/// The units that no file says, asked once for the records of all conditions.
+fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+    let Some(open) = state.records.open_units() else { return };
+    let channels: Vec<String> = open.channels.iter().map(|(name, unit)| format!("{name} [{unit}]")).collect();
+    let records = if open.records == 1 { "1 record".to_owned() } else { format!("{} records", open.records) };
+    let of = if open.conditions == 1 { String::new() } else { format!(" of {} conditions", open.conditions) };
+    let question = format!("{records}{of} without units: are they those of the dataset, {}?", channels.join(", "));
+    ui.add(Label::new(palette.small_warning(question)).wrap());
+    ui.horizontal_wrapped(|ui| {
+        let hint = "Holds for the records of all conditions whose files do not say a unit; one step to undo";
+        button_ui(ui, Button::new("Take the dataset's units"), hint, RecordsCommand::TakeDatasetUnits, commands);
+        let hint = "The columns of the first of these records; what is said there holds for all that have such columns";
+        button_ui(ui, Button::new("Say others…"), hint, RecordsCommand::ShowUnclear, commands);
+    });
+}
+
+/// What is done with the records of all conditions at once, where several have some.
+fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let count = with_records(state).count();
+    if count < 2 || !state.records.running.is_empty() {
+        return;
+    }
+    ui.button(format!("Identify all {count} conditions"))
+        .on_hover_text("One after the other, beside the live answer")
+        .asks(RecordsCommand::IdentifyAll, commands);
+    let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
+    if found > 1 {
+        let hint = "In place of the identified models of these conditions; one step to undo";
+        let take = format!("Use the models of {found} conditions");
+        offered_menu_ui(ui, (&take, hint), |offered| commands.push(RecordsCommand::TakeAll(offered).into()));
     }
 }
 

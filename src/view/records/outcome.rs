@@ -23,19 +23,6 @@ use super::{
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, records, palette } = page;
     ui.add_space(6.0);
-    let with_records = state.records.conditions.values().filter(|of| of.used_rows().next().is_some()).count();
-    if with_records > 1 && state.records.running.is_empty() {
-        let all = format!("Identify all {with_records} conditions");
-        ui.button(all)
-            .on_hover_text("One after the other, beside the live answer")
-            .asks(RecordsCommand::IdentifyAll, commands);
-        let found = state.records.conditions.values().filter(|of| of.identification().is_some()).count();
-        if found > 1 {
-            let hint = "In place of the identified models of these conditions; one step to undo";
-            let take = format!("Use the models of {found} conditions");
-            offered_menu_ui(ui, (&take, hint), |offered| commands.push(RecordsCommand::TakeAll(offered).into()));
-        }
-    }
     if let Some([low, high]) = records.band {
         ui.label(palette.small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's")));
         actions_ui(ui, vec![("Use the study's band".to_owned(), RecordsCommand::SetBand(None).into())], commands);

@@ -167,9 +167,9 @@ const HERE_WIDTH: f32 = 60.0;
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, records, palette } = page;
     let Some(row) = records.rows.get(records.chosen) else { return };
-    ui.label(
-        palette.small("What is set here holds for every record of the condition that has columns of these names."),
-    );
+    let is_named = row.table.entry_of_dataset(state.dataset()).is_some();
+    let of = if is_named { "of the condition" } else { "that was added, of all conditions," };
+    ui.label(palette.small(format!("What is set here holds for every record {of} that has columns of these names.")));
     ScrollArea::vertical().id_salt("columns of a record").auto_shrink(false).show(ui, |ui| {
         Grid::new("columns of a record").num_columns(6).striped(true).spacing([10.0, 4.0]).show(ui, |ui| {
             for (heading, hint) in [

@@ -12,11 +12,11 @@ use gdcm_core::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
 use gdcm_core::records::{
-    ChannelList, ColumnUse, LaidOutRecord, RecordChannels, RecordColumn, RecordLayout, RecordTable, ResamplingWish,
-    SaidChannel,
+    ChannelList, ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout, RecordSource,
+    RecordTable, ResamplingWish, SaidChannel,
 };
 use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
-use gdcm_core::units::number;
+use gdcm_core::units::{number, telling};
 
 use super::TimeModel;
 use crate::view::{Palette, Sorting, State, typed_number};
@@ -120,6 +120,10 @@ pub enum RecordsCommand {
     ShowAdvanced(&'static str),
     /// Draw the response of a model to the same inputs, or not.
     ShowTimeModel(TimeModel, bool),
+    /// Take every unit that no file says, in the records of all conditions, to be that of the dataset's channel.
+    TakeDatasetUnits,
+    /// Show a record, of whichever condition, whose columns are not clear, and its columns.
+    ShowUnclear,
     /// Make the part of a record between two times \[s\] a record of its own, in place of the whole.
     AddPart(usize, [f64; 2]),
     /// Forget a part of a record.
@@ -142,6 +146,17 @@ pub enum RecordsCommand {
     TakeAll(OfferedModels),
     /// Put the models of the dataset's file back into the condition shown.
     Return,
+}
+
+/// What became of a record that was read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AddedRecord {
+    /// It is new.
+    New,
+    /// It takes the place of the record that the same file held before.
+    ReadAgain,
+    /// It was there already.
+    KnownAlready,
 }
 
 /// The records of one condition, and what was made of them.
@@ -167,6 +182,8 @@ pub struct ConditionRecords {
     pub changed: bool,
     /// End of the band \[rad/s\] that topics were brought to a clock for; none where that is not known of all.
     pub clock_band_end: Option<f64>,
+    /// Records that the engineer leaves out himself, whether or not they have parts.
+    left_out: Vec<RecordSource>,
 }
 
 impl ConditionRecords {
@@ -175,6 +192,100 @@ impl ConditionRecords {
         let (inputs, outputs) = dataset.names_of_channels();
         let [inputs, outputs] = [inputs, outputs].map(|of| of.into_iter().map(ChannelPreparation::named).collect());
         Self { rows, inputs, outputs, ..Self::default() }
+    }
+
+    /// Uses a record, or leaves it out.
+    pub fn set_used(&mut self, index: usize, used: bool) -> bool {
+        let Some(row) = self.rows.get_mut(index) else { return false };
+        row.used = used;
+        self.left_out.retain(|source| *source != row.table.source);
+        if !used && row.table.part_s.is_none() {
+            self.left_out.push(row.table.source.clone());
+        }
+        true
+    }
+
+    /// A part of a record as a record of its own behind it; the whole is no longer used, for evidence counts once.
+    ///
+    /// # Errors
+    /// In words: the record has no samples then.
+    pub fn add_part(&mut self, index: usize, part_s: [f64; 2], channels: &RecordChannels) -> Result<(), String> {
+        let Some(whole) = self.rows.get_mut(index) else { return Err("there is no such record".to_owned()) };
+        let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
+        let table = Arc::new(whole.table.part_of_time(part_s));
+        let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
+        if part.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
+            let [from, to] = part_s.map(number);
+            let span = whole.span_s().map_or_else(String::new, |span_s| {
+                let [first, last] = span_s.map(|time_s| telling(time_s, 2));
+                format!("; it runs from {first} s to {last} s (+{from} +{to} counts from its start)")
+            });
+            return Err(format!("{}: no samples from {from} to {to} s{span}", whole.table.name));
+        }
+        let source = whole.table.source.clone();
+        let was_used = whole.used;
+        if whole.table.part_s.is_none() {
+            whole.used = false;
+            if !was_used && !self.has_parts(&source) && !self.left_out.contains(&source) {
+                self.left_out.push(source);
+            }
+        }
+        let parts = self.rows[index + 1..].iter().take_while(|row| row.table.part_s.is_some()).count();
+        self.rows.insert(index + 1 + parts, part);
+        Ok(())
+    }
+
+    /// Whether parts of a record are records of their own.
+    fn has_parts(&self, source: &RecordSource) -> bool {
+        self.rows.iter().any(|row| row.table.part_s.is_some() && row.table.source == *source)
+    }
+
+    /// Adds a record that was read, unless it is there already. A record of a file that has changed since takes the place of the one
+    /// that was read before; `read_from` says where files lie. Another one of the same name gets a number behind it.
+    pub fn add_row(&mut self, mut row: LaidOutRecord, read_from: &BTreeMap<String, PathBuf>) -> AddedRecord {
+        if self.rows.iter().any(|old| old.table.is_same_record(&row.table)) {
+            return AddedRecord::KnownAlready;
+        }
+        let path = |of: &LaidOutRecord| read_from.get(&of.table.source.sha256);
+        let is_read_again = |old: &LaidOutRecord| {
+            let [old_source, new_source] = [&old.table.source, &row.table.source];
+            let is_same_place = path(old).is_some() && path(old) == path(&row);
+            is_same_place && old.table.part_s.is_none() && old_source.variable == new_source.variable
+        };
+        if let Some(index) = self.rows.iter().position(is_read_again) {
+            let old = &self.rows[index];
+            row.used = old.used;
+            row.guess = old.guess.clone();
+            self.rows[index] = row;
+            return AddedRecord::ReadAgain;
+        }
+        let plain = row.table.name.clone();
+        let mut number = 1;
+        while self.rows.iter().any(|other| other.table.name == row.table.name) {
+            number += 1;
+            let name = format!("{plain} ({number})");
+            if let Some(flight) = &mut row.flight {
+                Arc::make_mut(flight).name.clone_from(&name);
+            }
+            Arc::make_mut(&mut row.table).name = name;
+        }
+        self.rows.push(row);
+        AddedRecord::New
+    }
+
+    /// Forgets a part of a record; the record that it was the last part of is used again, where the engineer did not leave it out.
+    pub fn remove_part(&mut self, index: usize) -> bool {
+        if self.rows.get(index).is_none_or(|row| row.table.part_s.is_none()) {
+            return false;
+        }
+        let source = self.rows.remove(index).table.source.clone();
+        if !self.has_parts(&source) && !self.left_out.contains(&source) {
+            for whole in self.rows.iter_mut().filter(|row| row.table.source == source) {
+                whole.used = true;
+            }
+        }
+        self.choose(self.chosen);
+        true
     }
 
     /// What was identified, where that went well.
@@ -284,6 +395,31 @@ impl ConditionRecords {
     }
 }
 
+/// What an edit of records is to be taken back to: the records of conditions as they are on the other side of it. An edit changes the
+/// records of few conditions; nothing of the others is kept.
+#[derive(Clone, Debug, Default)]
+pub struct RecordsBefore {
+    /// Records by condition; none of a condition that was not looked at yet.
+    pub conditions: BTreeMap<ConditionId, Option<ConditionRecords>>,
+    /// The files and folders that were added, where the edit changes them.
+    pub sources: Option<Vec<PathBuf>>,
+}
+
+impl ConditionRecords {
+    /// These records, taken up again in place of `now`: what was identified since stays, as something of other records.
+    fn taken_up(mut self, now: Option<Self>) -> Self {
+        let Some(now) = now else { return self };
+        let job = |of: &Self| of.found.as_ref().map(|(job, _)| job.clone());
+        if job(&self) != job(&now) {
+            self.changed = now.found.is_some();
+            self.found = now.found;
+        }
+        self.chosen = now.chosen;
+        self.choose(self.chosen);
+        self
+    }
+}
+
 /// What the pages of the view draw: the records of the condition shown.
 #[derive(Clone, Copy)]
 pub(super) struct Page<'a> {
@@ -329,6 +465,8 @@ pub struct RecordsState {
     pub path: String,
     /// The files and folders that were added.
     pub sources: Vec<PathBuf>,
+    /// Where the files of records lie that were read, by their SHA-256: of a file that has changed since, records are read again.
+    pub read_from: BTreeMap<String, PathBuf>,
     /// The dataset that is to be made of the records shown.
     pub wanted: WantedDataset,
     /// What is being read.
@@ -342,6 +480,54 @@ pub struct RecordsState {
 }
 
 impl RecordsState {
+    /// The records of these conditions as they are.
+    pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
+        let conditions = conditions.into_iter().map(|id| (id, self.conditions.get(&id).cloned())).collect();
+        RecordsBefore { conditions, sources: None }
+    }
+
+    /// Takes up the records on the other side of an edit, and gives those of this side.
+    pub fn exchange(&mut self, before: RecordsBefore) -> RecordsBefore {
+        let mut now = RecordsBefore::default();
+        for (id, records) in before.conditions {
+            let present = self.conditions.remove(&id);
+            if let Some(records) = records {
+                self.conditions.insert(id, records.taken_up(present.clone()));
+            }
+            now.conditions.insert(id, present);
+        }
+        now.sources = before.sources.map(|sources| std::mem::replace(&mut self.sources, sources));
+        now
+    }
+
+    /// The records whose columns are not clear for want of a unit: their channels, how many records and of how many conditions.
+    pub fn open_units(&self) -> Option<OpenUnits> {
+        let mut open = OpenUnits::default();
+        for (id, of) in &self.conditions {
+            let mut is_open = false;
+            for row in &of.rows {
+                let mut count = 0;
+                for problem in &row.problems {
+                    if let LayoutProblem::UnsaidUnit { channel, unit, .. } = problem {
+                        count += 1;
+                        if !open.channels.iter().any(|(known, _)| known == channel) {
+                            open.channels.push((channel.clone(), unit.clone()));
+                        }
+                    }
+                }
+                if count > 0 {
+                    open.records += 1;
+                    is_open = true;
+                    open.first.get_or_insert(*id);
+                }
+            }
+            if is_open {
+                open.conditions += 1;
+            }
+        }
+        (open.records > 0).then_some(open)
+    }
+
     /// The job of a condition that is under way or waits.
     pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)
@@ -358,6 +544,19 @@ impl RecordsState {
         jobs.sort_by_key(|job| job.condition != shown);
         jobs
     }
+}
+
+/// Units that no file says, in the records of all conditions.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct OpenUnits {
+    /// The channels with their units in the dataset.
+    pub channels: Vec<(String, String)>,
+    /// How many records lack some of them.
+    pub records: usize,
+    /// Of how many conditions.
+    pub conditions: usize,
+    /// The first of these.
+    pub first: Option<ConditionId>,
 }
 
 /// A dataset that is to be made of records, as typed.

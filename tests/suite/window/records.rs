@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use gdcm::view::View;
+use gdcm::view::command::Command as Action;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
-use gdcm_core::dataset::{Band, RecordKind};
+use gdcm_core::dataset::{Band, ChannelSide, RecordKind};
+use gdcm_core::identification::{SearchSpace, Signal};
 use gdcm_core::response::{FrequencyGrid, PreparedModel};
 use gdcm_core::study::setting;
 
@@ -14,7 +16,7 @@ use serde_json::{Value, json};
 use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
 use super::*;
-use crate::made_up::{Flight, Gusts, stable_aircraft};
+use crate::made_up::{Flight, Gusts, stable_aircraft, tries};
 
 const CONDITION_10_ID: ConditionId = ConditionId(10);
 
@@ -246,13 +248,304 @@ fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_i
     give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
     wait_until(&mut window, "the files", |window| rows(window) == 10);
     let records = &state(&window).records;
-    assert_eq!(records.conditions[&ConditionId(3)].rows[0].table.name, "cond03_sweep_LON_9");
+    let of_condition_3 = &records.conditions[&ConditionId(3)].rows;
+    assert_eq!(of_condition_3.len(), 10, "its own nine stay");
+    assert!(of_condition_3.iter().any(|row| row.table.name == "cond03_sweep_LON_9"));
     let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
     assert!(
         wrong.flight.is_none() && wrong.problems.iter().any(|problem| problem.to_string().contains("NZ")),
         "{:?}",
         wrong.problems
     );
+}
+
+/// Undoes or redoes a step by its key.
+fn step(window: &mut Window, modifiers: Modifiers) {
+    window.key_press_modifiers(modifiers, Key::Z);
+    settle(window);
+}
+
+const UNDO: Modifiers = Modifiers::COMMAND;
+const REDO: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+/// Name, use, role and columns of each record of condition 10, and the weight of the study.
+fn decided(window: &Window) -> String {
+    let of = state(window).records.conditions.get(&CONDITION_10_ID);
+    let rows = of.iter().flat_map(|records| &records.rows);
+    let rows =
+        rows.map(|row| (row.table.name.clone(), row.used, row.guess.held_out, row.guess.kind, row.layout.clone()));
+    let skews: Vec<f64> = of.iter().flat_map(|records| &records.outputs).map(|channel| channel.delay_s).collect();
+    format!("{:?} {skews:?} {}", rows.collect::<Vec<_>>(), state(window).study.settings.alpha_gain)
+}
+
+#[test]
+fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_study() {
+    let mut window = records_window();
+    let layout = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].layout.clone();
+    let mut states = vec![decided(&window)];
+    let mut other = layout(&window);
+    other.outputs.swap(0, 1);
+    let q = Signal { role: ChannelSide::Output, index: 1, name: "Q".to_owned() };
+    let edits: Vec<Action> = vec![
+        RecordsCommand::SetUsed(2, false).into(),
+        setting::ALPHA_GAIN.to(3.0).into(),
+        RecordsCommand::AddPart(0, [5.0, 25.0]).into(),
+        RecordsCommand::SetHeldOut(1, true).into(),
+        setting::ALPHA_GAIN.to(7.0).into(),
+        RecordsCommand::SetKind(3, RecordKind::Multisine).into(),
+        RecordsCommand::SetLayout(0, other).into(),
+        RecordsCommand::SetDelay(q, 0.05).into(),
+        RecordsCommand::RemovePart(1).into(),
+    ];
+    let count = edits.len();
+    for edit in edits {
+        give(&mut window, edit);
+        give(&mut window, Action::EndEdit);
+        let now = decided(&window);
+        assert_ne!(states.last(), Some(&now), "each of them changes something");
+        states.push(now);
+    }
+    assert_eq!(state(&window).history.undo_label(), Some("remove cond10_sweep_COL_1, 5 to 25 s (condition 10)"));
+    for at in (0..count).rev() {
+        step(&mut window, UNDO);
+        assert_eq!(decided(&window), states[at], "after step {at} was undone");
+    }
+    assert_eq!(state(&window).history.undo_label(), None);
+    for (at, expected) in states.iter().enumerate().skip(1) {
+        step(&mut window, REDO);
+        assert_eq!(&decided(&window), expected, "after step {at} was brought back");
+    }
+}
+
+#[test]
+fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless_it_was_left_out() {
+    let mut window = records_window();
+    let used = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].used;
+    type_into(&mut window, "Part of the record", "5 25");
+    type_into(&mut window, "Part of the record", "30 50");
+    assert!(!used(&window));
+    click(&mut window, "Record cond10_sweep_COL_1, 5 to 25 s");
+    click(&mut window, "Remove part");
+    assert!(!used(&window), "another part stays");
+    click(&mut window, "Record cond10_sweep_COL_1, 30 to 50 s");
+    click(&mut window, "Remove part");
+    assert!(used(&window) && rows(&window) == 9, "its tick is back");
+    for command in
+        [RecordsCommand::SetUsed(0, false), RecordsCommand::AddPart(0, [5.0, 25.0]), RecordsCommand::RemovePart(1)]
+    {
+        give(&mut window, command);
+    }
+    assert!(!used(&window), "the engineer left it out before");
+}
+
+#[test]
+fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_refused_with_the_span() {
+    let folder = tempfile::tempdir().unwrap();
+    let row = |k: u32| {
+        let at = 42.3 + 0.02 * f64::from(k);
+        format!("{at:.2},{0:.3},{0:.3},{0:.3},{0:.3},1,2,3,4,5,{0:.4}\n", (0.1 * f64::from(k)).sin() * 30.0)
+    };
+    let text = "time_s,LON [%],LAT [%],PED [%],COL [%],P [deg/s],Q [deg/s],R [deg/s],NX [m/s2],NY [m/s2],NZ [m/s2]\n"
+        .to_owned()
+        + &(0..=1950).map(row).collect::<String>();
+    std::fs::write(folder.path().join("prbs.csv"), text).unwrap();
+    let mut window = records_window();
+    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.csv")]));
+    wait_until(&mut window, "the record", |window| rows(window) == 10);
+    give(&mut window, RecordsCommand::Choose(9));
+    let span_s = state(&window).records.conditions[&CONDITION_10_ID].rows[9].span_s().unwrap();
+    assert!((span_s[0] - 42.3).abs() < 1e-9 && (span_s[1] - 81.3).abs() < 1e-9, "{span_s:?}");
+    window.get_by_label("runs from 42.30 s to 81.30 s on its clock, +0.00 s to +39.00 s from its start");
+    type_into(&mut window, "Part of the record", "5 34");
+    let told = state(&window).notice.clone().expect("it is refused");
+    assert!(told.kind == NoticeKind::Trouble && told.text.contains("it runs from 42.30 s to 81.30 s"), "{}", told.text);
+    assert_eq!(rows(&window), 10);
+    type_into(&mut window, "Part of the record", "+5 +34");
+    let part = &state(&window).records.conditions[&CONDITION_10_ID].rows[10];
+    assert_eq!(part.table.part_s, Some([47.3, 76.3]));
+    let [first_s, last_s] = part.span_s().unwrap();
+    assert!((first_s - 47.3).abs() < 0.021 && (last_s - 76.3).abs() < 0.021, "{first_s} {last_s}");
+}
+
+/// Records of conditions that have used some, and how many of these conditions there are.
+fn used_rows(window: &Window) -> (usize, usize) {
+    let used = state(window).records.conditions.values().map(|of| of.used_rows().count());
+    used.filter(|count| *count > 0).fold((0, 0), |(rows, conditions), count| (rows + count, conditions + 1))
+}
+
+/// The README, "From flight records to identified models", step 5, word by word.
+#[test]
+fn all_conditions_come_from_one_archive_as_the_readme_says() {
+    let mut window = records_window();
+    let own: Vec<_> =
+        state(&window).records.conditions[&CONDITION_10_ID].rows.iter().map(|row| row.flight.clone()).collect();
+    type_into(&mut window, "Path of records", "assets/example-records.zip");
+    wait_until(&mut window, "the archive", |window| used_rows(window) == (99, 11));
+    window.get_by_label("81 records of 9 conditions added; 18 there already");
+    let records = &state(&window).records;
+    assert!(
+        records.conditions.values().flat_map(|of| &of.rows).all(|row| row.problems.is_empty()),
+        "no unit is asked for"
+    );
+    assert!(records.open_units().is_none() && records.faults.is_empty());
+    for (row, flight) in records.conditions[&CONDITION_10_ID].rows.iter().zip(own) {
+        assert!(std::sync::Arc::ptr_eq(row.flight.as_ref().unwrap(), &flight.unwrap()), "its own records are kept");
+    }
+    // The page Conditions has them all, none of them identified yet.
+    click(&mut window, "Page Conditions");
+    assert_eq!(condition_table(state(&window)).rows.len(), 11);
+    // Adding is a step like others.
+    step(&mut window, UNDO);
+    assert_eq!(used_rows(&window), (18, 2));
+    step(&mut window, REDO);
+    assert_eq!(used_rows(&window), (99, 11));
+    // A search of little, so that the walk takes seconds; the whole one where all is tried.
+    let is_quick = tries(1, 2) == 1;
+    let search = SearchSpace { orders: vec![8], pasts: vec![10], poles: vec![6.0] };
+    for id in state(&window).dataset().ids().filter(|_| is_quick).collect::<Vec<_>>() {
+        give(&mut window, Action::SelectCondition(id));
+        give(&mut window, RecordsCommand::SetSearch(search.clone()));
+    }
+    window.get_by_label("Identify all 11 conditions").click();
+    wait_until(&mut window, "the first of them", |window| !state(window).records.running.is_empty());
+    wait_until(&mut window, "the end", |window| state(window).records.running.is_empty());
+    window.run_steps(2);
+    assert_eq!(state(&window).records.page, RecordsPage::Conditions);
+    let table = condition_table(state(&window));
+    let is_identified =
+        |row: &Vec<String>| row.len() > 2 && row[2].parse::<usize>().is_ok_and(|order| !is_quick || order == 8);
+    assert!(table.rows.len() == 11 && table.rows.iter().all(is_identified), "{table:?}");
+    window.get_by_label("Use the models of 11 conditions").click();
+    window.run_steps(3);
+    window.get_by_label("The refined models").click();
+    settle(&mut window);
+    assert_eq!(state(&window).study.taken_models().count(), 11);
+}
+
+/// A record of the example's channels whose file does not say units, of samples that leave most of them open.
+fn without_units(phase: f64) -> String {
+    let row = |k: u32| {
+        let at = 0.02 * f64::from(k);
+        let value = |rate: f64| (rate * at + phase).sin();
+        let sticks: String =
+            (0..4).map(|stick| format!(",{:.4}", 40.0 + 9.0 * value(1.0 + f64::from(stick)))).collect();
+        let outputs: String = (0..6).map(|output| format!(",{:.4}", 2.0 * value(1.5 + f64::from(output)))).collect();
+        format!("{at:.2}{sticks}{outputs}\n")
+    };
+    "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ\n".to_owned() + &(0..400).map(row).collect::<String>()
+}
+
+#[test]
+fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, phase) in [("cond05_flight.csv", 0.3), ("cond08_flight.csv", 0.7), ("cond10_flight.csv", 1.1)] {
+        std::fs::write(folder.path().join(file), without_units(phase)).unwrap();
+    }
+    let mut window = records_window();
+    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    wait_until(&mut window, "the files", |window| rows(window) == 10);
+    let open = |window: &Window| state(window).records.open_units().map(|open| (open.records, open.conditions));
+    assert_eq!(open(&window), Some((3, 3)));
+    let channels: Vec<String> =
+        state(&window).records.open_units().unwrap().channels.into_iter().map(|(name, _)| name).collect();
+    assert_eq!(channels, ["P", "Q", "R", "NX", "NY", "NZ"]);
+    click(&mut window, "Take the dataset's units");
+    assert_eq!(open(&window), None);
+    let factor = |window: &Window, id: i64, output: usize| {
+        let rows = &state(window).records.conditions[&ConditionId(id)].rows;
+        rows.iter().find(|row| row.table.name.ends_with("_flight")).unwrap().layout.outputs[output].unwrap().factor
+    };
+    assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
+    step(&mut window, UNDO);
+    assert_eq!(open(&window), Some((3, 3)));
+    // In another unit: what is said of the columns of one record is said of all that were added.
+    click(&mut window, "Say others…");
+    assert_eq!((state(&window).condition().id(), state(&window).records.page), (ConditionId(5), RecordsPage::Columns));
+    let own = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].layout.clone();
+    let before = own(&window);
+    let of_5 = &state(&window).records.conditions[&ConditionId(5)];
+    let mut layout = of_5.rows[of_5.chosen].layout.clone();
+    layout.outputs[0] = layout.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
+    let index = of_5.chosen;
+    give(&mut window, RecordsCommand::SetLayout(index, layout));
+    for id in [5, 8, 10] {
+        assert!((factor(&window, id, 0) - 180.0 / std::f64::consts::PI).abs() < 1e-9, "condition {id}");
+    }
+    assert_eq!(own(&window), before, "a record that the dataset names is in the dataset's units");
+    assert_eq!(state(&window).records.open_units().unwrap().channels.len(), 5, "the others are still asked for");
+    step(&mut window, UNDO);
+    assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
+}
+
+#[test]
+fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name_gets_a_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |day: &str| {
+        std::fs::create_dir_all(folder.path().join(day)).unwrap();
+        folder.path().join(day).join("cond10_flight.csv")
+    };
+    let (first, second) = (path("first"), path("second"));
+    std::fs::write(&first, without_units(0.3)).unwrap();
+    std::fs::write(&second, without_units(0.7)).unwrap();
+    let mut window = records_window();
+    let add = |window: &mut Window, path: &Path| {
+        give(window, RecordsCommand::Add(vec![path.to_owned()]));
+        wait_until(window, "the file", |window| state(window).records.reading.is_none());
+        let rows = &state(window).records.conditions[&CONDITION_10_ID].rows;
+        rows[9..].iter().map(|row| row.table.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(add(&mut window, &first), ["cond10_flight"]);
+    let steps = state(&window).history.undo_label().map(str::to_owned);
+    assert_eq!(steps.as_deref(), Some("add 1 record"));
+    assert_eq!(add(&mut window, &first), ["cond10_flight"], "the same is not added twice");
+    window.get_by_label("nothing added: 1 record there already");
+    assert_eq!(add(&mut window, &second), ["cond10_flight", "cond10_flight (2)"]);
+    let sha256 = |window: &Window, at: usize| {
+        state(window).records.conditions[&CONDITION_10_ID].rows[at].table.source.sha256.clone()
+    };
+    let before = sha256(&window, 9);
+    std::fs::write(&first, without_units(1.1)).unwrap();
+    assert_eq!(add(&mut window, &first), ["cond10_flight", "cond10_flight (2)"], "a changed file is read again");
+    assert_ne!(sha256(&window, 9), before);
+    step(&mut window, UNDO);
+    assert_eq!(sha256(&window, 9), before);
+    step(&mut window, UNDO);
+    step(&mut window, UNDO);
+    assert_eq!(rows(&window), 9);
+}
+
+#[test]
+fn a_condition_without_identified_models_offers_to_identify_them_from_records_in_every_view() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = late_dataset(folder.path());
+    let mut dataset: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    for condition in dataset["conditions"].as_array_mut().unwrap() {
+        condition["identified_models"] = json!([]);
+    }
+    std::fs::write(&path, dataset.to_string()).unwrap();
+    let mut window = window();
+    open_by_path(&mut window, &path);
+    let failure = |window: &Window| state(window).outcome().and_then(|of| of.as_ref().err()).map(|why| why.code());
+    wait_until(&mut window, "that there is no reference", |window| failure(window) == Some("no-reference"));
+    for view in View::ALL {
+        give(&mut window, Action::ShowView(view));
+        window.run_steps(2);
+    }
+    give(&mut window, Action::ShowIdentified(true));
+    show(&mut window, View::Bode);
+    assert!(drawn(&window, CurveRole::Nominal).label.contains("nominal"), "physics models are drawn all the same");
+    click(&mut window, "Identify from records");
+    assert!(state(&window).display.arrangement.is_shown(View::Records));
+    wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
+    window.get_by_label("Identify").click();
+    let found = |window: &Window| state(window).records.conditions[&ConditionId(7)].identification().is_some();
+    wait_until(&mut window, "the models", found);
+    click(&mut window, "Use these models");
+    click(&mut window, "The refined models");
+    wait_until(&mut window, "a result", |window| state(window).shown().is_some());
+    assert!(window.query_by_label("Identify from records").is_none());
+    click(&mut window, "Restore the file's models");
+    wait_until(&mut window, "none again", |window| failure(window) == Some("no-reference"));
 }
 
 /// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is

@@ -115,6 +115,13 @@ impl Assembly {
         draft.checked().ok().map(|(dataset, _)| dataset)
     }
 
+    /// The conditions that have no identified model, in the order of their ids.
+    pub fn without_reference(&self) -> Vec<i64> {
+        let mut conditions = by_condition(&self.parts);
+        conditions.retain(|_, parts| parts.iter().all(|(_, part)| part.row.role != Some(RowRole::Identified)));
+        conditions.into_keys().collect()
+    }
+
     /// The models that are taken.
     fn taken(&self) -> impl Iterator<Item = (usize, &Part)> {
         self.parts.iter().enumerate().filter(|(_, part)| !part.row.left_out)

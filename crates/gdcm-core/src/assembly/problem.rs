@@ -123,9 +123,6 @@ pub enum ProblemKind {
         /// How many it has.
         found: usize,
     },
-    /// A condition without identified models.
-    #[error("condition {0} has no identified model")]
-    NoIdentified(i64),
     /// Two models of a bundle have one name.
     #[error("the name \"{name}\" stands twice among the {bundle} models of condition {condition}")]
     Name {
@@ -230,9 +227,6 @@ pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) ->
     let count = |role: RowRole| parts.iter().filter(|(_, part)| part.row.role == Some(role)).count();
     if count(RowRole::Nominal) != 1 {
         kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
-    }
-    if count(RowRole::Identified) == 0 {
-        kinds.push(ProblemKind::NoIdentified(condition));
     }
     let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
     problems.extend(name_problems(condition, parts));

@@ -35,7 +35,8 @@ impl FlightState {
 }
 
 /// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of identified models, and the flight
-/// records that these come from, where the dataset says so.
+/// records that these come from, where the dataset says so. Without identified models the condition has no reference yet: it is
+/// valid, and has no result ([`Condition::has_reference`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
@@ -60,7 +61,7 @@ pub enum ConditionError {
         /// What stands there.
         value: f64,
     },
-    /// A bundle holds no model.
+    /// The physics bundle holds no model.
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.
@@ -179,6 +180,11 @@ impl Condition {
         &self.bundles[kind as usize]
     }
 
+    /// Whether the condition has identified models for its physics models to be compared with.
+    pub fn has_reference(&self) -> bool {
+        !self.bundle(BundleKind::Identified).is_empty()
+    }
+
     /// Position of the model of this name in its bundle, in file order.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
@@ -220,8 +226,9 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
     Ok(())
 }
 
+/// An identified bundle may be empty: models are identified once there are flight records.
 fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
-    if models.is_empty() {
+    if models.is_empty() && bundle == BundleKind::Physics {
         return Err(ConditionError::EmptyBundle(bundle));
     }
     for (second, model) in models.iter().enumerate() {

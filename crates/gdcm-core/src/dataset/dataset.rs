@@ -147,6 +147,11 @@ impl Dataset {
         self.conditions.iter().map(|condition| condition.id())
     }
 
+    /// The conditions without identified models, in file order: they have no reference to be compared with.
+    pub fn without_reference(&self) -> Vec<ConditionId> {
+        self.conditions.iter().filter(|condition| !condition.has_reference()).map(|condition| condition.id()).collect()
+    }
+
     /// One condition.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions.iter().find(|condition| condition.id() == id)

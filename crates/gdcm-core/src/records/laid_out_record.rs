@@ -102,6 +102,40 @@ impl LaidOutRecord {
         (Self { table: Arc::new(table), layout, guess, used: true, problems, cautions, flight }, notes)
     }
 
+    /// A record with its channels. One that the dataset itself names is as that says: in its units where the file says none, times
+    /// the factors and less the delays that it keeps, but for what is said of the samples of a channel.
+    pub fn as_dataset_says(
+        table: RecordTable,
+        channels: &RecordChannels,
+        dataset: &Dataset,
+        time: &TimeWish,
+    ) -> (Self, Vec<String>) {
+        let Some((_, entry)) = table.entry_of_dataset(dataset) else {
+            return Self::proposed(table, channels, time);
+        };
+        let channels = channels.clone().of_named_records();
+        let (record, mut notes) = Self::proposed(table, &channels, time);
+        let mut remedies = BTreeMap::new();
+        for (name, remedy) in &entry.remedies {
+            let factor = if channels.said.contains_key(name) { 1.0 } else { remedy.factor };
+            let kept = ChannelRemedy { factor, ..*remedy };
+            if kept != ChannelRemedy::NONE {
+                let (times, less_s) = (kept.factor, kept.delay_s);
+                notes.push(format!("{name}: times {times}, {less_s} s taken out, as the dataset says of this record"));
+                remedies.insert(name.clone(), kept);
+            }
+        }
+        let entry = ConditionRecord { remedies, ..entry.clone() };
+        (record.as_said(&entry, &channels), notes)
+    }
+
+    /// First and last time \[s\] of its samples, on its own clock; none while there are problems, or where no stamp is a number.
+    pub fn span_s(&self) -> Option<[f64; 2]> {
+        let mut stamps = self.flight.as_ref()?.time_s.iter().copied().filter(|time_s| time_s.is_finite());
+        let first_s = stamps.next()?;
+        Some([first_s, stamps.next_back().unwrap_or(first_s)])
+    }
+
     /// The same record with other columns for its channels.
     #[must_use]
     pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {

@@ -3,8 +3,8 @@
 use super::*;
 use crate::assembly::standard_on_axis;
 use crate::dataset::{
-    Band, BundleKind, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin,
-    PairTable, StateSpace, StateSpaceError,
+    Band, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin, PairTable,
+    StateSpace,
 };
 use std::fmt;
 use std::str::FromStr;
@@ -181,7 +181,7 @@ fn split_outside_quotes(text: &str) -> Vec<&str> {
 /// What stands for a unit that nobody says.
 pub const UNSAID_UNIT: &str = "?";
 
-/// A dataset of one condition with these records and without models: one that answers nothing, `y = 0 u`, stands in each bundle until
+/// A dataset of one condition with these records and without models: one that answers nothing, `y = 0 u`, is its physics model until
 /// there is another, and no analysis has a result before.
 ///
 /// The responses that matter are those of a helicopter as far as there are such channels, and else every output to the input of its
@@ -202,19 +202,15 @@ pub fn dataset_of_records(
     let (inputs, outputs): (Vec<Channel>, Vec<Channel>) =
         (channels.inputs.iter().map(channel).collect(), channels.outputs.iter().map(channel).collect());
     let on_axis = on_axis(&inputs, &outputs);
-    let none_yet = |kind: BundleKind, origin| -> Result<Model, StateSpaceError> {
-        let (rows, columns) = (outputs.len(), inputs.len());
-        let zeros = DMatrix::zeros;
-        let silent =
-            StateSpace::new(-DMatrix::identity(1, 1), zeros(1, columns), zeros(rows, 1), zeros(rows, columns))?;
-        Ok(Model::new(format!("no {kind} model yet"), origin, Dynamics::StateSpace(silent)))
-    };
-    let physics = none_yet(BundleKind::Physics, Origin::Nominal { perturbation: None })?;
-    let identified = none_yet(BundleKind::Identified, Origin::Identified { method: None, order: None })?;
-    let condition = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![physics], vec![identified])?;
+    let (rows, columns, zeros) = (outputs.len(), inputs.len(), DMatrix::zeros);
+    let silent = StateSpace::new(-DMatrix::identity(1, 1), zeros(1, columns), zeros(rows, 1), zeros(rows, columns))?;
+    let origin = Origin::Nominal { perturbation: None };
+    let physics = Model::new("no physics model yet", origin, Dynamics::StateSpace(silent));
+    let condition = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![physics], Vec::new())?;
     let header = DatasetHeader {
         name: name.to_owned(),
-        description: "Made of flight records; models that answer nothing stand for those to come.".to_owned(),
+        description: "Made of flight records; a model that answers nothing stands for the physics model to come."
+            .to_owned(),
         inputs,
         outputs,
         on_axis,
@@ -235,7 +231,7 @@ fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dataset::Pair;
+    use crate::dataset::{BundleKind, Pair};
 
     fn list(text: &str) -> Result<ChannelList, ChannelListError> {
         text.parse()
@@ -283,6 +279,7 @@ mod tests {
         assert_eq!((dataset.inputs()[0].unit.as_str(), dataset.outputs()[0].unit.as_str()), ("?", "rad/s"));
         assert!(dataset.on_axis()[Pair::new(0, 0)]);
         assert_eq!(condition.bundle(BundleKind::Physics)[0].name, "no physics model yet");
+        assert!(!condition.has_reference());
     }
 
     #[test]

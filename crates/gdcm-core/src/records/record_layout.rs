@@ -26,6 +26,11 @@ impl ColumnUse {
         Self { column, factor, is_unit_open: false, remedy: ChannelRemedy::NONE }
     }
 
+    /// The same without what is put right in one record.
+    fn without_remedy(self) -> Self {
+        Self { remedy: ChannelRemedy::NONE, ..self }
+    }
+
     /// What its samples are multiplied by in all.
     pub(super) fn gain(&self) -> f64 {
         self.factor * self.remedy.factor
@@ -173,16 +178,51 @@ impl RecordLayout {
         role.of(&mut self.inputs, &mut self.outputs).get_mut(index)?.as_mut()
     }
 
+    /// This layout of `table` with what differs between two layouts of `from`, channel by channel: what is said of the columns of one
+    /// record, of another that has columns of these names. What is put right in one record alone stays as it is.
+    #[must_use]
+    pub fn following(&self, table: &RecordTable, [before, after]: [&Self; 2], from: &RecordTable) -> Self {
+        let mut layout = self.clone();
+        if before.time != after.time {
+            layout.time = match after.time {
+                Some(TimeBase::Column { column, seconds }) => match place(column, from, table) {
+                    Some(column) => Some(TimeBase::Column { column, seconds }),
+                    None => self.time,
+                },
+                other => other,
+            };
+        }
+        let sides = [
+            (&mut layout.inputs, &before.inputs, &after.inputs),
+            (&mut layout.outputs, &before.outputs, &after.outputs),
+        ];
+        for (uses, before, after) in sides {
+            for (index, own) in uses.iter_mut().enumerate() {
+                let [was, is] = [before, after].map(|uses| uses.get(index).copied().flatten());
+                let Some(is) = is.filter(|is| was.map(ColumnUse::without_remedy) != Some(is.without_remedy())) else {
+                    continue;
+                };
+                if let Some(column) = place(is.column, from, table) {
+                    let remedy = own.map_or(ChannelRemedy::NONE, |own| own.remedy);
+                    *own = Some(ColumnUse { column, remedy, ..is });
+                }
+            }
+        }
+        layout
+    }
+
+    /// The same with every unit that is still to be said taken to be that of the channel.
+    #[must_use]
+    pub fn in_units_of_channels(&self) -> Self {
+        let closed = |uses: &[Option<ColumnUse>]| -> Vec<Option<ColumnUse>> {
+            uses.iter().map(|used| used.map(|used| ColumnUse { is_unit_open: false, ..used })).collect()
+        };
+        Self { inputs: closed(&self.inputs), outputs: closed(&self.outputs), ..self.clone() }
+    }
+
     /// The same columns, by name, of another record; none where that lacks one of them.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
-        let place = |column: usize| {
-            let name = &from.columns.get(column)?.name;
-            if other.columns.get(column).is_some_and(|same| same.name == *name) {
-                Some(column)
-            } else {
-                other.find(name)
-            }
-        };
+        let place = |column: usize| place(column, from, other);
         let carry = |uses: &[Option<ColumnUse>]| -> Option<Vec<Option<ColumnUse>>> {
             let carried = |used: &Option<ColumnUse>| match used {
                 Some(used) => Some(Some(ColumnUse { column: place(used.column)?, ..*used })),
@@ -248,6 +288,12 @@ impl RecordLayout {
         }
         problems
     }
+}
+
+/// Where a column of one record is in another, by its name.
+fn place(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
+    let name = &from.columns.get(column)?.name;
+    if other.columns.get(column).is_some_and(|same| same.name == *name) { Some(column) } else { other.find(name) }
 }
 
 fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
@@ -447,5 +493,35 @@ impl ColumnUse {
         });
         let besides = if self.factor == of_file { 1.0 } else { self.factor / of_file };
         ChannelRemedy { factor: self.remedy.factor * besides, ..self.remedy }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(names: &[&str]) -> RecordTable {
+        let columns = names.iter().map(|name| RecordColumn::new(*name, vec![0.0, 1.0, 2.0])).collect();
+        RecordTable::new("record", columns)
+    }
+
+    #[test]
+    fn what_is_said_of_one_channel_follows_in_other_records_and_leaves_their_other_channels() {
+        let (from, other) = (table(&["t", "P", "Q"]), table(&["Q", "t", "P"]));
+        let time = |column| Some(TimeBase::Column { column, seconds: 1.0 });
+        let open = |column| Some(ColumnUse { is_unit_open: true, ..ColumnUse::as_it_is(column) });
+        let before = RecordLayout { time: time(0), inputs: Vec::new(), outputs: vec![open(1), open(2)] };
+        let mut after = before.clone();
+        after.outputs[0] = before.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
+        let remedy = ChannelRemedy { delay_s: 0.1, ..ChannelRemedy::NONE };
+        let own = ColumnUse { remedy, ..ColumnUse::as_it_is(2) };
+        let layout = RecordLayout { time: time(1), inputs: Vec::new(), outputs: vec![Some(own), open(0)] };
+        let found = layout.following(&other, [&before, &after], &from);
+        let said = found.outputs[0].unwrap();
+        assert_eq!((said.column, said.is_unit_open, said.remedy), (2, false, remedy), "by its name, its remedy kept");
+        assert!((said.factor - 180.0 / std::f64::consts::PI).abs() < 1e-12);
+        assert_eq!((found.outputs[1], found.time), (layout.outputs[1], layout.time), "nothing else");
+        let without = table(&["t", "Q"]);
+        assert_eq!(before.following(&without, [&before, &after], &from), before, "it has no such column");
     }
 }

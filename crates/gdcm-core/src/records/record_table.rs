@@ -1,6 +1,7 @@
 //! A record as its file has it: columns of samples.
 
 use super::*;
+use crate::dataset::ConditionId;
 use std::ops::Range;
 
 /// A column of samples.
@@ -130,6 +131,32 @@ impl RecordTable {
             .or_else(indexed)
     }
 
+    /// What a dataset says of the record, and the condition: by its name in a file of the same name, or in an archive of another.
+    pub fn entry_of_dataset<'d>(&self, dataset: &'d Dataset) -> Option<(ConditionId, &'d ConditionRecord)> {
+        let source = &self.source;
+        for condition in dataset.conditions() {
+            for entry in condition.records() {
+                let same_file = file_name(&entry.file) == file_name(&source.file);
+                let same_name = entry.variable.is_some() && entry.name == self.name;
+                if (same_file || same_name) && entry.variable == source.variable && entry.part_s.is_none() {
+                    return Some((condition.id(), entry));
+                }
+            }
+        }
+        None
+    }
+
+    /// Whether both hold the same record: the same part of the same record of one file, or of the same samples under one name. The same
+    /// samples in a file of another name are a copy ([`leave_out_copies`]).
+    pub fn is_same_record(&self, other: &Self) -> bool {
+        let is_same_file = self.source.sha256 == other.source.sha256
+            && !self.source.sha256.is_empty()
+            && file_name(&self.source.file) == file_name(&other.source.file);
+        let is_same_source = is_same_file && self.source.variable == other.source.variable;
+        let is_same_content = self.name == other.name && same_columns(&self.columns, &other.columns);
+        self.part_s == other.part_s && (is_same_source || is_same_content)
+    }
+
     /// The name of a column in quotation marks.
     pub(super) fn quoted(&self, column: usize) -> String {
         self.columns
@@ -141,6 +168,20 @@ impl RecordTable {
     pub(super) fn column_names(&self) -> String {
         shown(&self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>())
     }
+}
+
+/// The last part of a path.
+fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
+}
+
+/// Whether columns have the same names and samples, to the last bit.
+fn same_columns(first: &[RecordColumn], second: &[RecordColumn]) -> bool {
+    let same = |a: &RecordColumn, b: &RecordColumn| {
+        let values = a.values.iter().map(|value| value.to_bits());
+        a.name == b.name && a.unit == b.unit && values.eq(b.values.iter().map(|value| value.to_bits()))
+    };
+    first.len() == second.len() && first.iter().zip(second).all(|(a, b)| same(a, b))
 }
 
 // Several records in one table.

@@ -222,6 +222,12 @@ impl ConditionAnalysis {
 /// Why a condition has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionFailure {
+    /// The condition has no identified model.
+    #[error(
+        "no identified models yet, so there is no reference to compare the physics models with; identify them from the condition's \
+         flight records (gdcm identify RECORDS --into DATASET, or Identify from records in the window), or add identified models"
+    )]
+    NoReference,
     /// The two representatives share no response that both have over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
@@ -250,4 +256,17 @@ pub enum ConditionFailure {
     /// The delays could not be computed.
     #[error("the delays could not be computed: {0}")]
     Delays(ProblemError),
+}
+
+impl ConditionFailure {
+    /// Stable name of the reason, for programs and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoReference => "no-reference",
+            Self::NothingToCompare { .. } => "nothing-to-compare",
+            Self::AllSetAside { .. } => "all-set-aside",
+            Self::Gains(_) => "gains-not-computed",
+            Self::Delays(_) => "delays-not-computed",
+        }
+    }
 }

@@ -175,6 +175,9 @@ impl Comparison {
         choice: &ConditionChoice,
         (average, coherence): (CostAverage, Option<f64>),
     ) -> Result<Self, ConditionFailure> {
+        if !condition.has_reference() {
+            return Err(ConditionFailure::NoReference);
+        }
         let top = grid.omega().last().copied().unwrap_or_default();
         let of_kind = |kind| {
             let measured = figures.bundle(kind).measured();

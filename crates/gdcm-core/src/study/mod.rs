@@ -301,23 +301,33 @@ impl Study {
 const MOST_STEPS: usize = 500;
 
 #[derive(Clone, Debug)]
-struct Step {
+struct Step<B> {
     label: String,
     study: Study,
+    beside: B,
 }
 
 /// What undo and redo go back over: whole studies, each with the label of the decision between it and the next.
-#[derive(Clone, Debug, Default)]
-pub struct History {
-    past: Vec<Step>,
-    future: Vec<Step>,
+///
+/// `B` is what a step changes beside the study: the state of it on the other side of the step, which undo and redo exchange for the
+/// present one. It is `B::default()`, which changes nothing, where the decision is one about the study.
+#[derive(Clone, Debug)]
+pub struct History<B = ()> {
+    past: Vec<Step<B>>,
+    future: Vec<Step<B>>,
     /// What the last decision took from the future.
-    lost: Vec<Step>,
+    lost: Vec<Step<B>>,
     /// The last decision, while the next may still be a part of it (a slider being dragged).
     open: Option<Edit>,
 }
 
-impl History {
+impl<B> Default for History<B> {
+    fn default() -> Self {
+        Self { past: Vec::new(), future: Vec::new(), lost: Vec::new(), open: None }
+    }
+}
+
+impl<B: Default> History<B> {
     /// Keeps `before`, the study that `edit` is about to change (or has just changed).
     ///
     /// A decision that continues the last one (see [`Edit::continues`]) adds no step until [`History::seal`].
@@ -327,18 +337,25 @@ impl History {
             return;
         }
         self.lost = lost;
-        self.push(Step { label: edit.label(&before), study: before });
+        self.push(Step { label: edit.label(&before), study: before, beside: B::default() });
         self.open = Some(edit.clone());
+    }
+
+    /// Keeps a decision that leaves the study as it is: `before` is what it changed beside the study, as that was.
+    pub fn record_beside(&mut self, study: Study, label: String, before: B) {
+        self.lost = std::mem::take(&mut self.future);
+        self.push(Step { label, study, beside: before });
+        self.open = None;
     }
 
     /// Keeps `before`, the study of the dataset as it was before it was read again.
     pub fn record_reload(&mut self, before: Study, label: String) {
         self.future.clear();
-        self.push(Step { label, study: before });
+        self.push(Step { label, study: before, beside: B::default() });
         self.open = None;
     }
 
-    fn push(&mut self, step: Step) {
+    fn push(&mut self, step: Step<B>) {
         if self.past.len() == MOST_STEPS {
             self.past.remove(0);
         }
@@ -350,11 +367,12 @@ impl History {
         self.open = None;
     }
 
-    /// The study before the last decision, given the study as it is now.
-    pub fn undo(&mut self, now: &Study) -> Option<Study> {
+    /// The study before the last decision, given the study as it is now; `exchange` puts what is beside it back, and gives that as
+    /// it is now.
+    pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
-        self.future.push(Step { label: step.label, study: now.clone() });
+        self.future.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
         Some(step.study)
     }
 
@@ -370,11 +388,11 @@ impl History {
         Some(step.study)
     }
 
-    /// The study after the last decision taken back, given the study as it is now.
-    pub fn redo(&mut self, now: &Study) -> Option<Study> {
+    /// The study after the last decision taken back, given the study as it is now; `exchange` as in [`History::undo`].
+    pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;
-        self.past.push(Step { label: step.label, study: now.clone() });
+        self.past.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
         Some(step.study)
     }
 

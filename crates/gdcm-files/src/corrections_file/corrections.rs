@@ -31,7 +31,9 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         let id = condition.id();
         match analysis.conditions.get(&id) {
             Some(Ok(result)) => conditions.push(names.condition(condition, result)),
-            Some(Err(failure)) => failed.push(without(id, &failure.to_string())),
+            Some(Err(failure)) => {
+                failed.push(json!({"id": id.0, "code": failure.code(), "why": failure.to_string()}));
+            }
             None => {}
         }
         match analysis.assessment.get(&id) {

@@ -87,7 +87,7 @@ pub(super) struct ConditionText {
     pub(super) mass_kg: Option<f64>,
     #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) physics_models: Vec<ModelText>,
-    #[serde(deserialize_with = "list::<MOST_MODELS, _, _>")]
+    #[serde(default, deserialize_with = "list::<MOST_MODELS, _, _>")]
     pub(super) identified_models: Vec<ModelText>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<RecordText, MOST_RECORDS>>,

@@ -148,13 +148,13 @@ impl Made {
 
     /// The error of a response of the condition over `omega`, the band.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
-        let reference = self.polar(&self.curves.identified[self.reference])?;
+        let reference = self.polar(self.curves.identified.get(self.reference)?)?;
         ErrorShape::of(&self.polar(response)?, &reference, omega, self.coherence_weights(omega).as_ref())
     }
 
     /// The frequencies among `omega` that count, where the reference's coherence says that.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
-        let flight = &self.curves.condition.bundle(BundleKind::Identified)[self.reference].dynamics;
+        let flight = &self.curves.condition.bundle(BundleKind::Identified).get(self.reference)?.dynamics;
         Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 

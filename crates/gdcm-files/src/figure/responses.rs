@@ -88,11 +88,11 @@ impl ResponseCache {
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = ResponseShape::of(curves.identified[reference].curve(pair));
+        let reference_shape = curves.identified.get(reference).map(|response| ResponseShape::of(response.curve(pair)));
         // The last frequency of a grid may be a rounding error beyond its end.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
-        self.reference = Some((reference_shape, points));
+        self.reference = reference_shape.map(|shape| (shape, points));
         let shapes = |kind| curves.bundle(kind).iter().map(|response| self.laid(response, pair)).collect::<Vec<_>>();
         let (physics, identified) = (shapes(BundleKind::Physics), shapes(BundleKind::Identified));
         self.physics = physics;

@@ -46,13 +46,14 @@ fn a_rejection_carries_its_reason_and_a_restored_model_has_none() {
 
 #[test]
 fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
-    let (mut study, mut history) = (study_of_example(), History::default());
+    let mut study = study_of_example();
+    let mut history: History = History::default();
     let edit = Edit::RejectBecause { model: nominal_of_10(), reason: "step".to_owned() };
     let before = study.clone();
     apply(&mut study, std::slice::from_ref(&edit));
     history.record(before.clone(), &edit);
-    assert_eq!(history.undo(&study), Some(before.clone()));
-    assert_eq!(history.redo(&before), Some(study.clone()));
+    assert_eq!(history.undo(&study, |()| ()), Some(before.clone()));
+    assert_eq!(history.redo(&before, |()| ()), Some(study.clone()));
     let other = Edit::RejectBecause { model: nominal_of_10(), reason: "x".repeat(LONGEST_REASON + 1) };
     let mut fresh = study_of_example();
     assert!(fresh.apply(&other).is_err());

@@ -89,13 +89,22 @@ fn a_bundle_needs_exactly_one_nominal_model() {
 
 #[test]
 fn empty_lists_are_refused() {
-    for (list, bundle) in [("physics_models", "the physics bundle"), ("identified_models", "the identified bundle")] {
-        assert_refused(
-            |file| file["conditions"][1][list] = json!([]),
-            &["condition 10 (number 2 in the file)", bundle, "at least one model"],
-        );
-    }
+    assert_refused(
+        |file| file["conditions"][1]["physics_models"] = json!([]),
+        &["condition 10 (number 2 in the file)", "the physics bundle", "at least one model"],
+    );
     assert_refused(|file| file["conditions"] = json!([]), &["conditions: expected at least one entry"]);
+}
+
+#[test]
+fn a_condition_without_identified_models_is_no_fault() {
+    let mut file: Value = serde_json::from_str(include_str!("../../../../../tests/data/small-dataset.json")).unwrap();
+    file["conditions"][0]["identified_models"] = json!([]);
+    file["conditions"][1].as_object_mut().unwrap().remove("identified_models");
+    let origin = gdcm_files::DatasetOrigin::File("small.json".into());
+    let loaded = gdcm_files::load_dataset_bytes(file.to_string().as_bytes(), origin).unwrap();
+    assert_eq!(loaded.dataset.without_reference(), loaded.dataset.ids().collect::<Vec<_>>());
+    assert!(loaded.cautions.is_empty(), "{:?}", loaded.cautions);
 }
 
 #[test]

@@ -214,6 +214,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_zero_has_no_sign() {
+        let mut table = Table::new("", ["a", "b", "c"]);
+        table.row(["-0.0", "−0.00", "-0.01"]);
+        assert_eq!(table.rows, [["0.0", "0.00", "-0.01"]]);
+    }
+
+    #[test]
     fn words_stand_at_the_left_and_figures_at_the_right() {
         let mut table = Table::new("Condition 3", ["response", "G [-]", "D [ms]"]);
         table.row(["LON → Q", "1.346", "−12.5"]);

@@ -451,6 +451,32 @@ mod tests {
     use crate::variables::ReadingBudget;
 
     #[test]
+    fn a_delay_that_the_schedule_leaves_out_is_named_and_counts_as_an_error_of_phase() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let models = exported_models(&analysis, &ExportRequest::default()).unwrap();
+        let nx = correction::Channel::Output(3);
+        for model in &models {
+            let id = model.condition;
+            let own_s = analysis.condition(id).unwrap().correction.pure_delay_s(nx);
+            let [LeftOutPart::Delay(left_out)] = &model.contents.left_out[..] else {
+                assert!(model.contents.left_out.is_empty() && own_s < 5e-5, "condition {id}: {own_s} s");
+                assert_eq!(model.phase_error_deg(), 0.0);
+                assert!(model.words().contains("gains exact, without delays"), "{}", model.words());
+                continue;
+            };
+            assert_eq!((id, left_out.channel), (ConditionId(4), nx));
+            let phase_deg = (12.0 * own_s).to_degrees();
+            assert!((model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1, "{phase_deg}");
+            assert!(model.words().contains("are left out, up to"), "{}", model.words());
+        }
+        let own = ExportRequest { correction: AssessedCorrection::Own, ..ExportRequest::default() };
+        let own = exported_models(&analysis, &own).unwrap();
+        assert!(own.iter().all(|model| model.contents.left_out.is_empty() && model.left_out_deg == 0.0));
+        assert!(own.iter().all(|model| model.contents.delays == PartSource::Own));
+    }
+
+    #[test]
     fn numpy_and_matlab_get_the_same_matrices_and_names() {
         let study = Study::new(embedded_example().unwrap().dataset);
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();

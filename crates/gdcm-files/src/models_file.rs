@@ -70,10 +70,11 @@ struct ContainingModelsText {
 
 /// Writes the text of a file of corrected models.
 pub(super) fn write_containing_models(models: &[ContainingModel], file: &mut dyn Write) -> io::Result<()> {
-    let text =
-        |of: &ContainingModel| ContainingModelText { model: model_text(&of.model), contains: of.contains.clone() };
-    let models = models.iter().map(text).collect();
-    write_compact(&ContainingModelsText { format: MODELS.name, version: MODELS.version, models }, file)
+    let mut texts = Vec::new();
+    for of in models {
+        texts.push(ContainingModelText { model: model_text(&of.model), contains: of.contains.clone() });
+    }
+    write_compact(&ContainingModelsText { format: MODELS.name, version: MODELS.version, models: texts }, file)
 }
 
 /// The text of a model outside a dataset.

@@ -304,6 +304,14 @@ impl ScheduledCost {
 }
 
 impl ScheduleCaution {
+    /// Whether it is of interest in a condition: what the schedule costs in one condition is not in another.
+    pub fn concerns(&self, condition: ConditionId) -> bool {
+        match self {
+            ScheduleCaution::CostsMore(cost) => cost.condition == condition,
+            _ => true,
+        }
+    }
+
     /// Its code in files.
     pub fn code(&self) -> &'static str {
         match self {

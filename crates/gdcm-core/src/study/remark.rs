@@ -1,7 +1,6 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
 use crate::correction::{Sensitivity, kkt_residual, sensitivities};
-use crate::schedule::ScheduleCaution;
 use crate::units::told_apart;
 
 use super::*;
@@ -84,11 +83,7 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let concerns = |caution: &&ScheduleCaution| match caution {
-            ScheduleCaution::CostsMore(cost) => cost.condition == result.condition.id(),
-            _ => true,
-        };
-        let cautions = schedule.cautions.iter().filter(concerns);
+        let cautions = schedule.cautions.iter().filter(|caution| caution.concerns(result.condition.id()));
         let words = cautions.map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }

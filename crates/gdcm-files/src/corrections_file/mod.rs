@@ -5,7 +5,6 @@ mod uncertainty;
 
 use std::collections::BTreeSet;
 use std::io::{self, Write};
-use std::iter::once;
 use std::path::{Path, PathBuf};
 
 use gdcm_core::correction::{Channel, ChannelCorrection, LeadPrice};
@@ -205,8 +204,10 @@ fn conditions<'a>(analysis: &'a Analysis, chosen: &BTreeSet<ConditionId>) -> imp
     let conditions = analysis.study.dataset.conditions();
     let chosen = conditions.iter().filter(|condition| chosen.contains(&condition.id()));
     let contents = ExportContents::of_results(analysis);
-    let contains = once(contents.words()).chain(contents.lines(&analysis.study.dataset).into_iter().skip(1));
-    let contains = contains.collect::<Vec<_>>().join("; ");
+    let mut contains = contents.words();
+    for words in contents.left_out_words(&analysis.study.dataset) {
+        contains.push_str(&format!("; left out: {words}"));
+    }
     chosen.map(move |condition| {
         let contains = contains.clone();
         let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at_state(condition.flight_state()));

@@ -389,6 +389,16 @@ const METRICS: [Metric; 8] = [
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
+/// A part of a correction by its name, and where it comes from.
+type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
+
+const CONTAINED: [ContainedPart; 4] = [
+    ("gains", |contents| contents.gains),
+    ("delays", |contents| contents.delays),
+    ("leads", |contents| contents.leads),
+    ("couplings", |contents| contents.couplings),
+];
+
 /// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in
 /// the others.
 fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
@@ -411,8 +421,8 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     variables.push(variable("model".to_owned(), row_of_texts(models.iter().map(|model| &model.name))));
     let corrections = models.iter().map(|model| model.correction);
     variables.push(variable("correction".to_owned(), row_of_texts(corrections)));
-    for (part, (name, _)) in models.first().map(|model| model.contents.parts()).into_iter().flatten().enumerate() {
-        let words = models.iter().map(|model| model.contents.parts()[part].1.word());
+    for (name, source) in CONTAINED {
+        let words = models.iter().map(|model| source(&model.contents).word());
         variables.push(variable(format!("contains_{name}"), row_of_texts(words)));
     }
     let left_out = models.iter().map(|model| model.contents.left_out_words(dataset).join("; "));

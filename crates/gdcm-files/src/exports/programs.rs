@@ -12,7 +12,7 @@ use minijinja::{Environment, Value, context};
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
 use super::{Export, ExportFault, ExportFormat, Exported};
-use crate::export_contents::{ExportContents, PartSource};
+use crate::export_contents::ExportContents;
 use crate::figure::all_channels;
 
 /// A programming language: the template of a file, and how it writes the value of a curve.
@@ -154,14 +154,15 @@ impl Language {
 
     /// What the file contains: for each part its name and where it comes from, and what is left out, as texts of the language.
     fn contents(&self, of: &Scheduled<'_>) -> Value {
-        let part = |(name, source): (&str, PartSource)| {
-            context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) }
-        };
-        let left_out = of.contents.left_out_words(of.dataset);
-        context! {
-            parts => of.contents.parts().map(part).to_vec(),
-            left_out => left_out.iter().map(|words| (self.text)(words)).collect::<Vec<_>>(),
+        let mut parts = Vec::new();
+        for (name, source) in of.contents.parts() {
+            parts.push(context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) });
         }
+        let mut left_out = Vec::new();
+        for words in of.contents.left_out_words(of.dataset) {
+            left_out.push((self.text)(&words));
+        }
+        context! { parts, left_out }
     }
 
     /// `M~(V)` of the airspeed `V` clamped and scaled as the couplings take it, and `K`, row by row.

@@ -9,36 +9,14 @@ use super::axis::Axis;
 use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
 
 /// The columns of a figure's long table.
-const LONG_COLUMNS: [&str; 8] = ["figure", "panel", "curve", "label", "x_quantity", "x", "y_quantity", "y"];
+pub const LONG_COLUMNS: [&str; 8] = ["figure", "panel", "curve", "label", "x_quantity", "x", "y_quantity", "y"];
 
 impl Figure {
-    /// All numbers as one table, a row for each point: the figure's title, the panel (title of the plot, quantity), the curve, the
-    /// text beside the point, and both coordinates, each after the label of its axis. A labelled horizontal line has no x.
-    pub fn long_table(&self) -> Table {
-        let mut table = Table::new("", LONG_COLUMNS);
-        for (title, panel) in self.panels() {
-            let name = panel.name(title);
-            for series in panel.marks.iter().flat_map(series) {
-                for (at, (&x, &y)) in series.x.iter().zip(series.y.iter()).enumerate() {
-                    let label = series.labels.as_ref().and_then(|labels| labels.get(at)).map_or("", String::as_str);
-                    let x = place(&panel.x, x);
-                    table.row([
-                        &self.title,
-                        &name,
-                        &series.name,
-                        label,
-                        &panel.x.label,
-                        &x,
-                        &panel.y.label,
-                        &figure(y),
-                    ]);
-                }
-            }
-            for (line, value) in panel.marks.iter().filter_map(constant) {
-                table.row([&self.title, &name, line, "", &panel.x.label, "", &panel.y.label, &figure(value)]);
-            }
-        }
-        without_control_codes(table)
+    /// All numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the figure's title, the panel (title of the
+    /// plot, quantity), the curve, the text beside the point, and both coordinates, each after the label of its axis. A labelled
+    /// horizontal line has no x.
+    pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
+        self.panels().flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
     }
 
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
@@ -73,6 +51,24 @@ impl Panel {
     /// What it is called among the numbers, in a plot of this title.
     fn name(&self, title: &str) -> String {
         if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) }
+    }
+
+    /// Its rows of the long table, in a figure of this title and under this name.
+    fn long_rows<'p>(&'p self, figure_title: &'p str, name: String) -> impl Iterator<Item = [String; 8]> + 'p {
+        let mut rows = Vec::new();
+        for series in self.marks.iter().flat_map(series) {
+            for at in 0..series.x.len().min(series.y.len()) {
+                let label = series.labels.as_ref().and_then(|labels| labels.get(at)).map_or("", String::as_str);
+                rows.push([series.name.clone(), label.to_owned(), place(&self.x, series.x[at]), figure(series.y[at])]);
+            }
+        }
+        for (line, value) in self.marks.iter().filter_map(constant) {
+            rows.push([line.to_owned(), String::new(), String::new(), figure(value)]);
+        }
+        rows.into_iter().map(move |[curve, label, x, y]| {
+            let (x_quantity, y_quantity) = (self.x.label.clone(), self.y.label.clone());
+            [figure_title.to_owned(), name.clone(), curve, label, x_quantity, x, y_quantity, y]
+        })
     }
 
     fn tables(&self, title: &str) -> (Table, Option<Table>) {
@@ -237,14 +233,13 @@ mod tests {
         let errors = Panel::new(Axis::named("Condition", ["3"]), Axis::linear("ΔJ [-]"))
             .with(Dots::new("optimum", DotShape::Circle, Color::INK).dot(0.0, f64::NAN, "10"));
         let plots = [Plot::new("LON → Q").panel(magnitude), Plot::new("").panel(errors)];
-        let table = Figure::new("Both").plots(plots).long_table();
-        assert_eq!(table.columns, ["figure", "panel", "curve", "label", "x_quantity", "x", "y_quantity", "y"]);
+        let rows: Vec<[String; 8]> = Figure::new("Both").plots(plots).long_rows().collect();
         let magnitude = "LON → Q, Magnitude [dB]";
         assert_eq!(
-            table.rows,
+            rows,
             [
                 ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "0.5", "Magnitude [dB]", "1.0"],
-                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "12.0", "Magnitude [dB]", "0.0"],
+                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "12.0", "Magnitude [dB]", "-0.0"],
                 ["Both", magnitude, "limit", "", "Frequency [rad/s]", "", "Magnitude [dB]", "3.0"],
                 ["Both", "ΔJ [-]", "optimum", "10", "Condition", "3", "ΔJ [-]", ""],
             ]

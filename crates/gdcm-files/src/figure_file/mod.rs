@@ -5,13 +5,14 @@ mod png;
 mod svg;
 
 use std::io::{self, Write};
+use std::iter::once;
 use std::path::Path;
 
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
 use gdcm_core::units::without_sign_of_zero;
 
-use crate::figure::{ColumnWidth, Figure, FigureFormat};
+use crate::figure::{ColumnWidth, Figure, FigureFormat, LONG_COLUMNS};
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
@@ -33,7 +34,7 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
 /// [`FileError::FigureWithoutNumbers`] where the numbers of a figure are asked for that shows none; else what hinders the writing.
 pub fn write_figure(figure: &Figure, width: ColumnWidth, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     let format = figure_format(path)?;
-    if format == FigureFormat::Csv && figure.long_table().rows.is_empty() {
+    if format == FigureFormat::Csv && figure.long_rows().next().is_none() {
         return Err(FileError::FigureWithoutNumbers { path: path.to_owned(), title: figure.title.clone() });
     }
     outputs.add(path, |file| write_as(figure, width, format, file))?;
@@ -46,7 +47,7 @@ pub fn write_as(figure: &Figure, width: ColumnWidth, format: FigureFormat, file:
         FigureFormat::Svg => file.write_all(svg::svg(&figure.drawing(width)).as_bytes()),
         FigureFormat::Png => png::write_png(&figure.drawing(width), file),
         FigureFormat::Pdf => file.write_all(&pdf::pdf(&figure.drawing(width))?),
-        FigureFormat::Csv => write_tables(file, &[figure.long_table()]),
+        FigureFormat::Csv => write_records(file, once(LONG_COLUMNS.map(str::to_owned)).chain(figure.long_rows())),
     }
 }
 

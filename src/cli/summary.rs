@@ -15,7 +15,7 @@ use gdcm_core::uncertainty::Scalar;
 use gdcm_core::units::{number, s_to_ms, signed, six_digits};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::terminal::{by_words, detail, detail_list, indented, keep_caution, line, of_conditions};
+use super::terminal::{by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions};
 
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
@@ -383,7 +383,7 @@ fn schedule_section(analysis: &Analysis) -> String {
     for caution in &schedule.cautions {
         let words = caution.words(&inputs, &outputs);
         if let ScheduleCaution::CostsMore(cost) = caution {
-            keep_caution(&[cost.condition], &words);
+            keep_coded_caution(Some(caution.code()), &[cost.condition], &words);
         }
         text += &detail("caution", &sanitized(&words));
     }

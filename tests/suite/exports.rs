@@ -224,6 +224,10 @@ fn a_schedule_that_loses_what_a_condition_gains_is_cautioned_of() {
         assert!(scheduled > 1.0 && scheduled > 2.0 * own, "{note}");
     }
     assert!(out.contains("with the condition's own correction") && out.contains("left out"), "{out}");
+    let line = ["analyze", "lagging.json", "--schedule-delays=never", "--out", "out", "--force", "--json"];
+    let said: Value = serde_json::from_str(&desk.gdcm(&line).out).unwrap();
+    let doubled = entries(&said["cautions"]).iter().filter(|caution| caution["code"] == "scheduled-cost-doubled");
+    assert_eq!(doubled.map(|caution| caution["conditions"].clone()).collect::<Vec<_>>(), [json!([7]), json!([10])]);
 }
 
 #[test]

@@ -295,7 +295,7 @@ impl ExportedModel {
         if self.pade_order == 0 && self.lead_states > 0 {
             return format!(
                 "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
-                telling(self.approximation_error_deg, 3),
+                bound_words(self.approximation_error_deg),
                 number(self.band_top_rad_s)
             );
         }
@@ -310,10 +310,18 @@ impl ExportedModel {
             if self.lead_states > 0 { "gains and lead filters" } else { "gains" },
             if has_delays { "delays" } else { "the model's own delays" },
             self.pade_order,
-            telling(self.approximation_error_deg, 3),
+            bound_words(self.approximation_error_deg),
             number(self.band_top_rad_s)
         )
     }
+}
+
+/// An upper bound of a phase error \[deg\] in words: nothing below a thousandth of a degree is told apart.
+fn bound_words(error_deg: f64) -> String {
+    /// The least bound that is told.
+    const LEAST_DEG: f64 = 1e-3;
+    let bound_deg = if error_deg > 0.0 { error_deg.max(LEAST_DEG) } else { 0.0 };
+    format!("{bound_deg:.3}")
 }
 
 /// The models under the names "condition 10, nominal"; their notes say what was done to them and how exact it is.

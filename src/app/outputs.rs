@@ -11,8 +11,8 @@ use gdcm_core::study::{
 use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_files::{
     Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource, ReportSubject,
-    add_tolerances, csv_text, figure_format, load_tolerances, read_levels, report, save_report, save_tables,
-    write_export, write_figure, write_results,
+    add_tolerances, csv_text, export_contents, figure_format, load_tolerances, read_levels, report, save_report,
+    save_tables, write_export, write_figure, write_results,
 };
 
 use super::GdcmApp;
@@ -49,15 +49,21 @@ impl GdcmApp {
         let path = self.at_home(path);
         let source = ExportSource { name: self.state.study_name.clone(), sha256: self.loaded.sha256.clone() };
         let request = ExportRequest { format, ..ExportRequest::default() };
+        let contents = export_contents(&analysis, &request);
+        let left_out = contents.left_out_words(&analysis.study.dataset);
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
         let absent = self.absent_bars(analysis.uncertainty.is_some());
         let words = |remarks: Vec<String>| {
+            let left_out = match left_out.as_slice() {
+                [] => String::new(),
+                parts => format!("; left out: {}", parts.join(", ")),
+            };
             let remark = match remarks.as_slice() {
                 [] => String::new(),
                 [remark] => format!(" ({remark})"),
                 several => format!(" ({} remarks, in the file)", several.len()),
             };
-            format!("exported {}{remark}{absent}", sanitized_path(&path))
+            format!("exported {}: {}{left_out}{remark}{absent}", sanitized_path(&path), contents.words())
         };
         self.written(written.map(words), FormKind::ExportAs, Command::ExportAs(format, path.clone()));
     }

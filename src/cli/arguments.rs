@@ -190,6 +190,11 @@ impl Args for SettingOptions {
                 Kind::Flag { .. } => return argument.action(ArgAction::SetTrue),
                 Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),
                 Kind::Range { .. } => argument.value_name("LO HI").num_args(1..=2),
+                _ if let Some(word) = setting.bare => argument
+                    .value_name(setting.syntax())
+                    .num_args(0..=1)
+                    .require_equals(true)
+                    .default_missing_value(word),
                 _ => argument.value_name(setting.syntax()),
             };
             argument.allow_negative_numbers(true)

@@ -59,13 +59,19 @@ pub fn run(
     }
 }
 
-/// The arguments, a word that stands for no range joined to its option: `--gain-bounds auto FILE` does not take the file for its
-/// second number.
+/// The arguments, a word joined to its option where that may do with less: `--gain-bounds auto FILE` does not take the file for its
+/// second number, nor `--schedule-delays FILE` for its word.
 fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
         let joins = SETTINGS.iter().any(|setting| {
-            let is_word = matches!(setting.kind, Kind::Range { nothing: Some([word, _]), .. } if argument == word);
+            let is_word = match setting.kind {
+                Kind::Range { nothing: Some([word, _]), .. } => argument == word,
+                Kind::Choice { words, .. } if setting.bare.is_some() => {
+                    words.iter().any(|[word, ..]| argument == *word)
+                }
+                _ => false,
+            };
             is_word && joined.last().is_some_and(|last| last == setting.option)
         });
         match joined.last_mut().filter(|_| joins) {

@@ -19,8 +19,8 @@ use gdcm_files::figure::{
 };
 use gdcm_files::{
     EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, ReportSource, ReportSubject, check_export,
-    figure_format, make_directory, report as report_of, result_paths, save_report, write_export, write_figure,
-    write_results,
+    export_contents, figure_format, make_directory, report as report_of, result_paths, save_report, write_export,
+    write_figure, write_results,
 };
 
 use super::arguments::{
@@ -137,8 +137,9 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     outputs.check(&[&arguments.out])?;
     let (analysis, _) = analysis_of(study, &arguments.study, true)?;
     let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
+    let contents = export_contents(&analysis, &request).lines(&analysis.study.dataset);
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
-    let remarks: String = remarks.iter().map(|remark| format!("{}\n", sanitized(remark))).collect();
+    let remarks: String = contents.iter().chain(&remarks).map(|remark| format!("{}\n", sanitized(remark))).collect();
     say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.words))
 }
 

@@ -5,17 +5,17 @@ use std::path::Path;
 use gdcm_core::correction::{ChannelCorrection, ChannelLeads, GainSource, LeadPrice, Outcome};
 use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::schedule::{Schedule, ScheduledQuantity};
+use gdcm_core::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_core::study::{
     Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, ConventionDoubt,
     PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_limit_words, remarks,
     scatter_table,
 };
 use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::{number, s_to_ms, signed};
+use gdcm_core::units::{number, s_to_ms, signed, six_digits};
 use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
-use super::terminal::{by_words, detail, detail_list, indented, keep_caution, line, of_conditions};
+use super::terminal::{by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions};
 
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
@@ -55,11 +55,11 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let held = if held.is_empty() { "none".to_owned() } else { held.join(", ") };
     let band = format!(
         "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
-        number(settings.band.min()),
-        number(settings.band.max()),
+        six_digits(settings.band.min()),
+        six_digits(settings.band.max()),
         settings.points,
-        number(settings.alpha_gain),
-        number(settings.alpha_delay)
+        six_digits(settings.alpha_gain),
+        six_digits(settings.alpha_delay)
     );
     let dataset = format!("{}, {}", sanitized(study.dataset.name()), loaded.origin);
     let phase = match settings.phase {
@@ -68,8 +68,8 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         PhaseCorrection::Lead => format!(
             "corrected by a delay or a lead filter a channel: order {}, n {}, R_max {}",
             settings.lead.order.number(),
-            number(settings.lead.pole),
-            number(settings.lead.limit)
+            six_digits(settings.lead.pole),
+            six_digits(settings.lead.limit)
         ),
     };
     let mut text = line("Dataset", &dataset) + &line("Band", &band);
@@ -381,7 +381,14 @@ fn schedule_section(analysis: &Analysis) -> String {
     let mut text = line("Schedule", &format!("{kind}, {range}{second}; net gains:"));
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     for caution in &schedule.cautions {
-        text += &detail("caution", &sanitized(&caution.words(&inputs, &outputs)));
+        let words = caution.words(&inputs, &outputs);
+        if let ScheduleCaution::CostsMore(cost) = caution {
+            keep_coded_caution(Some(caution.code()), &[cost.condition], &words);
+        }
+        text += &detail("caution", &sanitized(&words));
+    }
+    for delayed in analysis.unscheduled_delays() {
+        text += &detail("left out", &sanitized(&delayed.words(&analysis.study.dataset)));
     }
     text += &schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3));
     if schedule.has_delays() {

@@ -136,7 +136,7 @@ pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
     keep_coded_caution(None, conditions, words);
 }
 
-fn keep_coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
+pub(super) fn keep_coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
     let conditions = conditions.iter().map(|id| id.0).collect();
     said().cautions.push(SaidCaution { code, text: plain(words, ""), conditions });
 }

@@ -7,9 +7,9 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, ScrollArea, TextEdit, Ui, vec2};
 
 use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Difference, Edit};
-use gdcm_files::EXPORTERS;
+use gdcm_core::study::{Analysis, Difference, Edit};
 use gdcm_files::figure::ColumnWidth;
+use gdcm_files::{EXPORTERS, ExportContents, ExportRequest, export_contents};
 
 use super::records::{RecordsCommand, WantedDataset};
 use super::{
@@ -174,6 +174,11 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
     if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension)).filter(|_| kind == FormKind::ExportAs) {
         path = format!("{stem}.{}", forms.export_format.extension);
     }
+    if kind == FormKind::ExportAs {
+        let request = ExportRequest { format: state.forms.export_format, ..ExportRequest::default() };
+        contents_ui(form, state, |analysis| export_contents(analysis, &request));
+    }
+    let forms = &mut state.forms;
     let lost = forms.lost_dataset.as_ref().filter(|_| kind == FormKind::FindDataset);
     let explanation = lost.map_or(words.explanation, |(_, reason)| reason);
     if !explanation.is_empty() {
@@ -186,6 +191,17 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
         form.cancel_ui(waits);
     });
     *forms.typed_in(kind) = path;
+}
+
+/// What the file of an export would contain, and what it would leave out; nothing before there are results.
+fn contents_ui(form: &mut Form<'_, '_>, state: &State, contents: impl Fn(&Analysis) -> ExportContents) {
+    let Some(analysis) = state.analysis() else { return };
+    let contents = contents(analysis);
+    form.ui.add_space(4.0);
+    form.explain(&format!("Contains: {}.", contents.words()));
+    for words in contents.left_out_words(&analysis.study.dataset) {
+        form.ui.add(Label::new(form.palette.small_warning(&format!("Left out: {words}"))).wrap());
+    }
 }
 
 /// What a form asks for with its path.
@@ -207,6 +223,7 @@ fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command>
 fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
     form.title("Export corrections");
     form.explain("Writes corrections.json, corrections.csv and assessment.csv into a folder.");
+    contents_ui(form, state, ExportContents::of_results);
     let conditions = state.dataset().conditions().iter();
     let names: Vec<(ConditionId, String)> =
         conditions.map(|condition| (condition.id(), condition.flight_state().name.clone())).collect();

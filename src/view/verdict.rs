@@ -3,11 +3,12 @@
 use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy};
 use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_core::response::median;
+use gdcm_core::schedule::ScheduleCaution;
 use gdcm_core::study::{
     ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole,
     Value, setting,
 };
-use gdcm_core::units::{number, s_to_ms, signed, telling};
+use gdcm_core::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 
 use super::views::{offered_couplings, used_couplings};
 use super::{Command, FormKind, Sheet, State, View, turn_entry};
@@ -175,7 +176,7 @@ fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
 /// "0.5–12 rad/s".
 pub(super) fn band_words(state: &State) -> String {
     let band = state.study.settings.band;
-    format!("{}–{} rad/s", number(band.min()), number(band.max()))
+    format!("{}–{} rad/s", six_digits(band.min()), six_digits(band.max()))
 }
 
 fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
@@ -314,12 +315,27 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     upper.or(remedy.lower.map(|lower| [lower, bounds.upper])).map(Value::Range)
 }
 
-/// That there are no couplings where some are asked for, or what they do to poles and loop; else the price of the leads.
+/// That there are no couplings where some are asked for, or what they do to poles and loop; else the price of the leads; else what the
+/// schedule costs here.
 fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let of_couplings = coupling_caution(state);
     let is_trouble = of_couplings.as_ref().is_some_and(|(kind, _)| *kind == RemarkKind::Trouble);
     let words = of_couplings.map(|(_, words)| words);
-    if is_trouble { words } else { lead_caution(shown).or(words) }
+    if is_trouble { words } else { lead_caution(shown).or(words).or_else(|| schedule_caution(state, shown)) }
+}
+
+/// That the schedule leaves more than twice the J of the condition's own correction here (M12).
+fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
+    let schedule = state.analysis()?.schedule.as_ref().ok()?;
+    for caution in &schedule.cautions {
+        if let ScheduleCaution::CostsMore(cost) = caution
+            && cost.condition == shown.condition.id()
+        {
+            let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
+            return Some(format!("Scheduled: J {scheduled}, own {own}"));
+        }
+    }
+    None
 }
 
 /// The gravest of what there is to say of the couplings that are used, in a few words; the list of reasons has all of it.

@@ -1,5 +1,6 @@
 //! The commands, through the program itself.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -175,6 +176,7 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
     ended.assert_done();
     assert!(ended.out.contains("net delays in ms:"), "{}", ended.out);
     let written = crate::read_json(&desk.path("out/corrections.json"));
+    assert_eq!(written["settings"]["schedule_delays"], "always");
     assert_eq!(written["settings"]["schedule"]["delays"], true);
     assert!(written["schedule"]["delays_s"].is_object());
     assert_eq!(written["settings"]["agreement_db"], 0.2);
@@ -531,11 +533,45 @@ fn a_figure_of_every_view_is_written() {
 #[test]
 fn a_figure_is_written_as_its_name_says() {
     let desk = Desk::new();
-    for (out, start) in [("a.pdf", "%PDF"), ("a.PNG", "\u{fffd}PNG"), ("a.csv", "series,label,Airspeed [kt]")] {
+    for (out, start) in
+        [("a.pdf", "%PDF"), ("a.PNG", "\u{fffd}PNG"), ("a.csv", "figure,panel,curve,label,x_quantity,x,y_quantity,y\n")]
+    {
         desk.gdcm(&["figure", "small.json", "--view", "net-gain", "--out", out]).assert_done();
         let bytes = fs::read(desk.path(out)).unwrap();
         assert!(String::from_utf8_lossy(&bytes).contains(start) && bytes.len() > 100, "{out}");
     }
+}
+
+#[test]
+fn the_numbers_of_a_figure_of_several_panels_are_one_table() {
+    let desk = Desk::new();
+    let figure = ["figure", "small.json", "--view", "bode", "--condition", "7", "--pair", "all", "--out", "a.csv"];
+    desk.gdcm(&figure).assert_done();
+    let mut table = csv::Reader::from_path(desk.path("a.csv")).unwrap();
+    let columns: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(columns[..3], ["figure", "panel", "curve"]);
+    // A reader that is not flexible refuses rows of another length.
+    let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().unwrap();
+    let panels: BTreeSet<&str> = rows.iter().map(|row| &row[1]).collect();
+    assert_eq!(panels.len(), 8, "magnitude and phase of four responses: {panels:?}");
+    assert!(rows.iter().all(|row| row[5].parse::<f64>().is_ok()), "a frequency in every row");
+    assert!(rows.iter().all(|row| &row[7] != "-0.0"));
+}
+
+#[test]
+fn settings_are_printed_with_six_digits() {
+    let desk = Desk::new();
+    let settings = ["--alpha", "0.5302786771123", "--band", "0.50000000001", "12"];
+    let ended = desk.gdcm(&[&["analyze", "small.json", "--out", "out"][..], &settings].concat());
+    ended.assert_done();
+    let line = ended.out.lines().find(|line| line.starts_with("Band")).unwrap();
+    assert!(line.contains("0.5 to 12 rad/s") && line.contains("alpha 0.530279 (gains)"), "{line}");
+    let written = crate::read_json(&desk.path("out/corrections.json"));
+    assert_eq!(written["settings"]["alpha_gain"], 0.530_278_677_112_3, "to the last digit in files");
+    desk.gdcm(&[&["report", "small.json", "--out", "r.html"][..], &settings].concat()).assert_done();
+    let report = fs::read_to_string(desk.path("r.html")).unwrap();
+    assert!(report.contains("α of the gains") && !report.contains("\u{391} of"), "a symbol has no capital");
+    assert!(report.contains("0.530279") && !report.contains("0.53027867"));
 }
 
 #[test]

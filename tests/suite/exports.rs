@@ -7,7 +7,7 @@ use std::process::Command;
 use gdcm_core::assembly::{FoundModel, Headings};
 use gdcm_core::dataset::{Pair, StateSpace};
 use gdcm_core::response::evaluate;
-use gdcm_files::{EXPORTERS, ExportFormat, FolderProgress, read_models};
+use gdcm_files::{EXPORTERS, ExportFormat, FolderProgress, load_dataset, read_models};
 use serde_json::{Value, json};
 
 use crate::commands::Desk;
@@ -103,6 +103,143 @@ fn the_options_of_a_study_come_first() {
     let ended = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
     assert!(ended.out.contains("delays are not scheduled in this study: they are zero here"), "{}", ended.out);
     assert!(fs::read_to_string(desk.path("b.py")).unwrap().contains("# Note: delays are not scheduled"));
+}
+
+/// The small dataset, flown with the nominal physics model behind delays of the inputs \[s\], which differ from condition to condition.
+const FLOWN_DELAYS_S: [[f64; 2]; 2] = [[0.03, 0.05], [0.04, 0.03]];
+
+fn desk_with_lagging_flight() -> Desk {
+    let desk = Desk::new();
+    desk.write("lagging.json", |file| {
+        for (condition, delays_s) in FLOWN_DELAYS_S.into_iter().enumerate() {
+            let condition = &mut file["conditions"][condition];
+            let nominal = condition["physics_models"][0].clone();
+            let mut flown = json!({"name": "flown", "input_delays_s": delays_s});
+            for matrix in ["A", "B", "C", "D"] {
+                flown[matrix] = nominal[matrix].clone();
+            }
+            condition["identified_models"] = json!([flown]);
+        }
+    });
+    desk
+}
+
+#[test]
+fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
+    let desk = desk_with_lagging_flight();
+    let export = |more: &[&str]| {
+        let line =
+            [&["export", "lagging.json", "--as", "state-space", "--out", "m.json", "--force", "--pade", "8"], more];
+        let ended = desk.gdcm(&line.concat());
+        ended.assert_done();
+        let text = crate::read_json(&desk.path("m.json"));
+        let contains = entries(&text["models"]).iter().map(|model| model["contains"].clone()).collect::<Vec<_>>();
+        (ended.out, contains, models(&desk.path("m.json")))
+    };
+    let dataset = load_dataset(&desk.path("lagging.json")).unwrap().dataset;
+    let omega = [0.5, 3.0, 12.0];
+    for more in [&[][..], &["--schedule-delays"], &["--schedule-delays", "automatic"], &["--schedule-delays=always"]] {
+        let (out, contains, found) = export(more);
+        assert!(out.contains("\ncontains: gains scheduled, delays scheduled, leads none, couplings none\n"), "{out}");
+        assert!(!out.contains("left out"), "{out}");
+        for (place, condition) in dataset.conditions().iter().enumerate() {
+            assert_eq!(contains[place]["delays"], "scheduled");
+            assert_eq!(contains[place]["left_out"], json!([]));
+            let flown = &condition.bundle(gdcm_core::dataset::BundleKind::Identified)[0];
+            let gdcm_core::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else { panic!("no matrices") };
+            let (flown, found) = (evaluate(flown, &omega), evaluate(&state_space(&found[place]), &omega));
+            for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
+                for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
+                    // Two airspeeds bear a straight line, which goes through both.
+                    assert!((found - flown).norm() <= 1e-6 * flown.norm(), "{pair:?} of condition {}", condition.id());
+                }
+            }
+        }
+    }
+    let (out, contains, _) = export(&["--schedule-delays", "never"]);
+    assert!(out.contains("\ncontains: gains scheduled, delays none, leads none, couplings none\n"), "{out}");
+    // 50 ms at 12 rad/s are 34.4 degrees.
+    assert!(out.contains("left out, up to 34.377 deg at 12 rad/s") && !out.contains("delays exact"), "{out}");
+    for contains in &contains {
+        assert_eq!((&contains["gains"], &contains["delays"]), (&json!("scheduled"), &json!("none")));
+        assert!(!entries(&contains["left_out"]).is_empty(), "{contains}");
+    }
+    let (out, contains, _) = export(&["--schedule-delays", "never", "--correction", "own"]);
+    assert!(out.contains("\ncontains: gains own, delays own, leads none, couplings none\n"), "{out}");
+    assert!(contains.iter().all(|contains| contains["delays"] == "own" && contains["left_out"] == json!([])));
+}
+
+#[test]
+fn every_export_states_what_it_contains() {
+    let desk = desk_with_lagging_flight();
+    for ExportFormat { name: format, extension, .. } in EXPORTERS {
+        let name = format!("{}.{extension}", format.replace('-', "_"));
+        let ended =
+            desk.gdcm(&["export", "lagging.json", "--schedule-delays", "never", "--as", format, "--out", &name]);
+        ended.assert_done();
+        let delays = if ["mat", "csv", "json", "state-space"].contains(&format) { "delays own" } else { "delays none" };
+        let delays = if format == "state-space" { "delays none" } else { delays };
+        let line = ended.out.lines().find(|line| line.starts_with("contains: gains ")).unwrap();
+        assert!(line.contains(delays), "{format}: {line}");
+        assert!(ended.out.contains("\nleft out: delay of "), "{format}: {}", ended.out);
+    }
+    let read = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
+    let heading = "Contains: gains scheduled, delays none, leads none, couplings none.";
+    for name in ["m.m", "py.py", "h.h", "table_csv.csv"] {
+        assert!(read(name).contains(heading) && read(name).contains("Left out: delay of "), "{name}");
+    }
+    assert!(read("h.h").contains("#define GDCM_CONTAINS_DELAYS \"none\"\n"));
+    let table = read("csv.csv");
+    let heading = table.lines().next().unwrap();
+    assert!(heading.ends_with(",contains"), "{heading}");
+    assert!(
+        table.contains("gains own and scheduled, delays own, leads none, couplings none; left out: delay of "),
+        "{table}"
+    );
+    let corrections = crate::read_json(&desk.path("json.json"));
+    let contains = &corrections["contains"];
+    assert_eq!((&contains["gains"], &contains["delays"]), (&json!("own and scheduled"), &json!("own")));
+    assert_eq!(entries(&contains["left_out"]).len(), 2, "{contains}");
+    let print = "import py; print(py.CONTAINS['gains'], py.CONTAINS['delays'], len(py.CONTAINS['left_out']))";
+    if let Ok(output) = Command::new("python3").args(["-c", print]).current_dir(&desk.directory).output() {
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), "scheduled none 2\n");
+    }
+}
+
+#[test]
+fn a_schedule_that_loses_what_a_condition_gains_is_cautioned_of() {
+    let desk = desk_with_lagging_flight();
+    let notes = |scheduling: &str| {
+        let ended = desk.gdcm(&["analyze", "lagging.json", "--schedule-delays", scheduling, "--out", "out", "--force"]);
+        ended.assert_done();
+        let corrections = crate::read_json(&desk.path("out/corrections.json"));
+        let notes = corrections["schedule"]["caution_notes"].as_array().cloned().unwrap_or_default();
+        (ended.out, notes.into_iter().filter(|note| note["code"] == "scheduled-cost-doubled").collect::<Vec<_>>())
+    };
+    assert_eq!(notes("automatic").1, Vec::<Value>::new());
+    let (out, notes) = notes("never");
+    assert_eq!(notes.iter().map(|note| note["condition"].clone()).collect::<Vec<_>>(), [7, 10]);
+    for note in &notes {
+        let [scheduled, own] = ["value", "own"].map(|key| note[key].as_f64().unwrap());
+        assert!(scheduled > 1.0 && scheduled > 2.0 * own, "{note}");
+    }
+    let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("with the condition's own correction") && words.contains("left out"), "{out}");
+    let line = ["analyze", "lagging.json", "--schedule-delays=never", "--out", "out", "--force", "--json"];
+    let said: Value = serde_json::from_str(&desk.gdcm(&line).out).unwrap();
+    let doubled = entries(&said["cautions"]).iter().filter(|caution| caution["code"] == "scheduled-cost-doubled");
+    assert_eq!(doubled.map(|caution| caution["conditions"].clone()).collect::<Vec<_>>(), [json!([7]), json!([10])]);
+}
+
+#[test]
+fn the_example_has_gains_alone_and_the_delay_that_it_leaves_out_is_named() {
+    let desk = Desk::new();
+    let ended = desk.gdcm(&["export", "--as", "py", "--out", "a.py"]);
+    ended.assert_done();
+    assert!(ended.out.contains("\ncontains: gains scheduled, delays none, "), "{}", ended.out);
+    let left_out: Vec<&str> = ended.out.lines().filter(|line| line.starts_with("left out: ")).collect();
+    assert_eq!(left_out.len(), 1, "{left_out:?}");
+    assert!(left_out[0].starts_with("left out: delay of output NX: ") && left_out[0].contains("in condition 4 "));
 }
 
 #[test]

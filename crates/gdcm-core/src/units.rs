@@ -40,6 +40,19 @@ pub fn number(value: f64) -> String {
     if plain.len() > LONGEST && exponent.len() < plain.len() { exponent } else { plain }
 }
 
+/// A setting or another figure for people, with at most six significant digits: "0.530279", "12", "1e300".
+pub fn six_digits(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    number(rounded)
+}
+
+/// The text of a number, a zero without its sign: "0.0" of "-0.0"; any other text as it is.
+pub fn without_sign_of_zero(text: &str) -> &str {
+    let Some(digits) = text.strip_prefix(['-', '\u{2212}']) else { return text };
+    let is_zero = digits.contains('0') && digits.chars().all(|digit| matches!(digit, '0' | '.'));
+    if is_zero { digits } else { text }
+}
+
 /// A figure that is not zero in so many decimals, and in more where it would read as nothing: two digits always stand.
 pub fn telling(value: f64, decimals: usize) -> String {
     /// Beyond these decimals an exponent is shorter.
@@ -101,6 +114,15 @@ mod tests {
         ] {
             assert_eq!(number(value), text);
         }
+    }
+
+    #[test]
+    fn figures_for_people_have_six_digits_and_zeros_no_sign() {
+        let figures = [0.530_278_677_112_3, 12.0, 1e300, -1e-12, 0.0, 1e3 * 0.0123];
+        assert_eq!(figures.map(six_digits), ["0.530279", "12", "1e300", "-1e-12", "0", "12.3"]);
+        let texts = ["-0.0", "\u{2212}0.00", "-0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x"];
+        let expected = ["0.0", "0.00", "0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x"];
+        assert_eq!(texts.map(without_sign_of_zero), expected);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod beginning;
 mod corrections_file;
 mod dataset_file;
+mod export_contents;
 mod exports;
 pub mod figure;
 mod figure_file;
@@ -30,8 +31,10 @@ pub use dataset_file::{
     DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
     load_dataset_within, save_dataset, write_example,
 };
+pub use export_contents::{ExportContents, LeftOutPart, PartSource};
 pub use exports::{
-    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, write_export,
+    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, export_contents,
+    write_export,
 };
 pub use figure_file::{csv_text, figure_format, save_tables, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};

@@ -41,10 +41,40 @@ pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -
 }
 
 /// Writes the text of that file.
-pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
+fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let models = models.iter().map(model_text).collect();
     let text = ModelsText { format: MODELS.name.to_owned(), version: MODELS.version, models };
     write_compact(&text, file)
+}
+
+/// A corrected model, with what of the correction it contains.
+pub(super) struct ContainingModel {
+    pub(super) model: FoundModel,
+    /// The block `contains`.
+    pub(super) contains: Value,
+}
+
+#[derive(Serialize)]
+struct ContainingModelText {
+    #[serde(flatten)]
+    model: ModelText,
+    contains: Value,
+}
+
+#[derive(Serialize)]
+struct ContainingModelsText {
+    format: &'static str,
+    version: u64,
+    models: Vec<ContainingModelText>,
+}
+
+/// Writes the text of a file of corrected models.
+pub(super) fn write_containing_models(models: &[ContainingModel], file: &mut dyn Write) -> io::Result<()> {
+    let mut texts = Vec::new();
+    for of in models {
+        texts.push(ContainingModelText { model: model_text(&of.model), contains: of.contains.clone() });
+    }
+    write_compact(&ContainingModelsText { format: MODELS.name, version: MODELS.version, models: texts }, file)
 }
 
 /// The text of a model outside a dataset.

@@ -182,10 +182,11 @@ fn decisions_of(
 
 /// Decisions without variants; each setting has to be within its range.
 fn present_decisions(
-    settings: Settings<ResponseNames>,
+    mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
     dataset: &Dataset,
 ) -> Result<Decisions, ContentError> {
+    settings.complete_delay_scheduling();
     let start = Settings::of(dataset);
     settings.with_responses(|_, _| start.ignored.clone()).check().map_err(|(setting, refusal)| {
         ContentError::new(Location::entry(format!("settings, {}", setting.key.replace('.', ", "))), refusal)

@@ -20,7 +20,7 @@ use gdcm_core::dataset::ConditionId;
 use gdcm_core::identification::{HIGHEST_ORDER, LONGEST_PAST, SearchSpace};
 use gdcm_core::records::LayoutProblem;
 use gdcm_core::study::Table;
-use gdcm_core::units::number;
+use gdcm_core::units::{number, six_digits};
 use gdcm_files::figure::decimals;
 
 use super::controls::page_tab_ui;
@@ -245,7 +245,7 @@ const REFERENCES: &str = "references";
 fn advanced_ui(ui: &mut Ui, page: Page<'_>, field: &mut Option<&'static str>, commands: &mut Vec<Command>) {
     let Page { state, records, palette } = page;
     let band = state.study.settings.band;
-    let of_study = format!("{} {} (the study's)", number(band.min()), number(band.max()));
+    let of_study = format!("{} {} (the study's)", six_digits(band.min()), six_digits(band.max()));
     let said = records.band.map_or_else(String::new, |[low, high]| format!("{} {}", number(low), number(high)));
     let search = &records.search;
     let lists: [(&str, String, &str, Sets); 3] = [

@@ -202,8 +202,20 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
         "example.py",
         "the end of the name goes with the format"
     );
+    wait_until(&mut window, "results", |window| state(window).analysis().is_some());
+    window.run_steps(2);
+    for words in
+        ["Contains: gains scheduled, delays none, leads none, couplings none.", "Left out: delay of output NX: "]
+    {
+        assert!(window.query_by_label_contains(words).is_some(), "{words}");
+    }
     let notice = exported(&mut window, &path);
     assert!(notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"), "{}", notice.text);
+    assert!(
+        notice
+            .text
+            .contains(": gains scheduled, delays none, leads none, couplings none; left out: delay of output NX")
+    );
     assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction(airspeed_kt):"));
 
     std::fs::write(&path, "mine").unwrap();

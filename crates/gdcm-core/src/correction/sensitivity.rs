@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 use crate::dataset::Pair;
+use crate::units::number;
 
 /// Something that keeps the channels from a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +31,23 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
+    /// The change that the words are about \[dB or ms\]: 1, or a tenth, a hundredth, … of it, so that the slope is extrapolated to
+    /// less than half of the objective, which cannot fall by more than all of it.
+    pub fn step(&self) -> f64 {
+        const MOST_SHARE: f64 = 0.5;
+        /// A nanosecond or a millionth of a decibel is the least that is spoken of.
+        const MOST_POWERS: i32 = 6;
+        let share = self.share_per_unit.abs();
+        let power = (0..MOST_POWERS).find(|&power| share * 10_f64.powi(-power) <= MOST_SHARE);
+        10_f64.powi(-power.unwrap_or(MOST_POWERS))
+    }
+
     /// The sensitivity in words.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let percent = 100.0 * self.share_per_unit.abs();
+        let step = self.step();
+        // An objective next to nothing is all gone before the least step ends.
+        let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
+        let step = number(step);
         let (gain, is_dear) = (self.quantity.is_gain(), self.per_unit > 0.0);
         let name = match self.restraint {
             ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
@@ -42,15 +57,17 @@ impl Sensitivity {
         };
         let change = if is_dear { "lowering" } else { "raising" };
         let way = match (self.quantity, self.restraint) {
-            (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by 1 dB"),
+            (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by {step} dB"),
             (Quantity::Gain(_), bound) => {
                 let end = if matches!(bound, ActiveConstraint::LowerBound(_)) { "lower" } else { "upper" };
-                format!("on its {end} bound: {change} the bound by 1 dB")
+                format!("on its {end} bound: {change} the bound by {step} dB")
             }
-            (_, ActiveConstraint::Held(_)) => format!("held: 1 ms {} delay", if is_dear { "less" } else { "more" }),
-            (Quantity::Delay, ActiveConstraint::LowerBound(_)) => "0: 1 ms of lead".to_owned(),
-            (_, ActiveConstraint::LowerBound(_)) => "at its most lead: 1 ms more of it".to_owned(),
-            (_, ActiveConstraint::UpperBound(_)) => "on its upper bound: raising the bound by 1 ms".to_owned(),
+            (_, ActiveConstraint::Held(_)) => {
+                format!("held: {step} ms {} delay", if is_dear { "less" } else { "more" })
+            }
+            (Quantity::Delay, ActiveConstraint::LowerBound(_)) => format!("0: {step} ms of lead"),
+            (_, ActiveConstraint::LowerBound(_)) => format!("at its most lead: {step} ms more of it"),
+            (_, ActiveConstraint::UpperBound(_)) => format!("on its upper bound: raising the bound by {step} ms"),
         };
         format!("{name} is {way} would lower the objective by about {percent:.2} %.")
     }

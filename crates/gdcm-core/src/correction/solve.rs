@@ -146,8 +146,8 @@ pub struct Solution {
     pub proof: Proof,
     /// Product or sum at which each held entry is held, p x m: its delta where that is possible (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
-    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem; or
-    /// within the tolerance of [`Problem::agreement`](super::Problem::agreement) where a loop of entries asks for it.
+    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem (or a
+    /// nanosecond, where that is more); or within the tolerance of [`Problem::agreement`](super::Problem::agreement) where a loop of entries asks for it.
     pub matched: bool,
     /// The entries that are not.
     pub unmatched: Vec<Unmatched>,
@@ -169,6 +169,18 @@ impl Solution {
 /// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below which a held entry counts as
 /// matched (M8).
 const MATCHED: f64 = 1e-8;
+
+/// Residual \[s\] below which a held delay counts as matched, however small the delays of the problem are: what rounding leaves of
+/// two equal phases is no delay. At the highest frequency of a band, 1e5 rad/s, it is 0.006 degrees.
+const MATCHED_DELAY_S: f64 = 1e-9;
+
+/// Residual in the coordinate of a problem below which a held entry counts as matched.
+fn matched_within(coordinate: Coordinate) -> f64 {
+    match coordinate {
+        Coordinate::Logarithm => MATCHED,
+        Coordinate::Time { unit_s } => MATCHED.max(MATCHED_DELAY_S / unit_s),
+    }
+}
 
 /// Finds the channel gains (equation (7), M8), delays (equation (11), M9) or signed delays (M15.4) of least objective, with a proof that no others are
 /// better.
@@ -315,7 +327,8 @@ fn misses(
     effort: &Effort<'_>,
 ) -> Result<Vec<Unmatched>, SearchStopped> {
     let (quantity, coordinate) = (problem.quantity, problem.coordinate());
-    let clashes = clashes(problem, held, reached, MATCHED, effort)?;
+    let tolerance = matched_within(coordinate);
+    let clashes = clashes(problem, held, reached, tolerance, effort)?;
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
         Some((_, clash)) => clash.clone(),
         None => Conflict {
@@ -326,7 +339,7 @@ fn misses(
         },
     };
     let entries = held.entries.iter().zip(&reached.targets);
-    let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > MATCHED);
+    let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > tolerance);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
         let excess =

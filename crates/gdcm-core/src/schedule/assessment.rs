@@ -242,12 +242,20 @@ pub fn corrected_cost(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<Cost>> {
-    mismatch.map(|pair, mismatch| {
-        let (mismatch, leads) = (mismatch.as_ref()?, correction.leads.as_ref());
-        let led = leads.and_then(|leads| leads.curve(pair));
-        let led = led.map(|lead| mismatch.multiplied(&lead.magnitude_db, &lead.phase));
-        Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction.without_leads_on(pair)?, average))
-    })
+    mismatch.map(|pair, mismatch| corrected_cost_on(mismatch.as_ref()?, correction, pair, omega, average))
+}
+
+/// J of one response of a model after `correction`; none where its net gain is not positive.
+pub fn corrected_cost_on(
+    mismatch: &Mismatch,
+    correction: &ChannelCorrection,
+    pair: Pair,
+    omega: &[f64],
+    average: CostAverage,
+) -> Option<Cost> {
+    let led = correction.leads.as_ref().and_then(|leads| leads.curve(pair));
+    let led = led.map(|lead| mismatch.multiplied(&lead.magnitude_db, &lead.phase));
+    Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction.without_leads_on(pair)?, average))
 }
 
 #[cfg(test)]

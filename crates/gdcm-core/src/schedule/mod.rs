@@ -6,11 +6,14 @@ mod second_variable;
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use std::fmt;
+
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadPrice};
 use crate::dataset::{ConditionId, FlightState};
-use crate::units::{s_to_ms, signed};
+use crate::units::{s_to_ms, signed, told_apart};
 use crate::whole_number::{whole, whole_or_none};
 
 pub use self::{assessment::*, regression::*, second_variable::*};
@@ -47,6 +50,59 @@ pub enum ScheduledQuantity {
     Gain,
 }
 
+/// Net delay \[s\] of a constrained response above which delays are scheduled automatically (M11).
+pub const NOTABLE_DELAY_S: f64 = 5e-4;
+
+/// Whether the schedule has delays beside gains (M11).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DelayScheduling {
+    /// Where a constrained response has a net delay above [`NOTABLE_DELAY_S`] in a scheduled condition.
+    #[default]
+    Automatic,
+    /// In every study.
+    Always,
+    /// In none (the paper).
+    Never,
+}
+
+impl From<bool> for DelayScheduling {
+    /// The value that a flag of an older program stands for.
+    fn from(flag: bool) -> Self {
+        if flag { Self::Always } else { Self::Never }
+    }
+}
+
+impl<'de> Deserialize<'de> for DelayScheduling {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(DelaySchedulingVisitor)
+    }
+}
+
+/// Reads a word, or the flag of an older program.
+struct DelaySchedulingVisitor;
+
+impl Visitor<'_> for DelaySchedulingVisitor {
+    type Value = DelayScheduling;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("\"automatic\", \"always\" or \"never\"")
+    }
+
+    fn visit_bool<E: Error>(self, flag: bool) -> Result<DelayScheduling, E> {
+        Ok(flag.into())
+    }
+
+    fn visit_str<E: Error>(self, word: &str) -> Result<DelayScheduling, E> {
+        match word {
+            "automatic" => Ok(DelayScheduling::Automatic),
+            "always" => Ok(DelayScheduling::Always),
+            "never" => Ok(DelayScheduling::Never),
+            _ => Err(E::unknown_variant(word, &["automatic", "always", "never"])),
+        }
+    }
+}
+
 /// How channel gains are scheduled.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
@@ -55,7 +111,8 @@ pub struct ScheduleSettings {
     pub kind: ScheduleKind,
     /// What is regressed.
     pub quantity: ScheduledQuantity,
-    /// Whether delays are scheduled too.
+    /// Whether this schedule has delays too: what [`DelayScheduling`] comes to in the conditions at hand. In the settings of a
+    /// study it is what older programs read, `true` where delays are always scheduled.
     pub delays: bool,
     /// Degree of the polynomial of signed delays, where leads are asked for, 0 to [`HIGHEST_DEGREE`]: servo, sensor and computing
     /// lags do not depend on airspeed (M15.5).
@@ -217,9 +274,55 @@ pub enum ScheduleCaution {
     },
     /// A gain is not positive somewhere between, which only a regression of `k` itself can give.
     NotPositive,
+    /// The scheduled correction leaves a condition with much more J than its own correction does (M12).
+    CostsMore(ScheduledCost),
+}
+
+/// Mean J of the on-axis responses of one physics model of a condition (M12).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScheduledCost {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Name of the physics model: the nominal one, or the representative where that is rejected.
+    pub model: String,
+    /// J under the schedule.
+    pub scheduled: f64,
+    /// J under the condition's own correction.
+    pub own: f64,
+}
+
+impl ScheduledCost {
+    /// Scheduled J over own J above which the schedule is cautioned about.
+    const NOTABLE_RATIO: f64 = 2.0;
+    /// Scheduled J below which nothing is said: 1 is 0.2 dB.
+    const LEAST_NOTABLE: f64 = 1.0;
+
+    /// Whether the scheduled J is more than twice the condition's own.
+    pub fn is_notable(&self) -> bool {
+        self.scheduled > Self::LEAST_NOTABLE && self.scheduled > Self::NOTABLE_RATIO * self.own
+    }
 }
 
 impl ScheduleCaution {
+    /// Whether it is of interest in a condition: what the schedule costs in one condition is not in another.
+    pub fn concerns(&self, condition: ConditionId) -> bool {
+        match self {
+            ScheduleCaution::CostsMore(cost) => cost.condition == condition,
+            _ => true,
+        }
+    }
+
+    /// Its code in files.
+    pub fn code(&self) -> &'static str {
+        match self {
+            ScheduleCaution::DegreeLowered { .. } => "degree-lowered",
+            ScheduleCaution::Overshoot { .. } => "schedule-overshoots",
+            ScheduleCaution::SignedDelayApart { .. } => "signed-delay-apart",
+            ScheduleCaution::NotPositive => "scheduled-gain-not-positive",
+            ScheduleCaution::CostsMore(_) => "scheduled-cost-doubled",
+        }
+    }
+
     /// The caution in words; channels have these names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
@@ -248,6 +351,13 @@ impl ScheduleCaution {
                 signed(s_to_ms(*elsewhere_s), 0)
             ),
             ScheduleCaution::NotPositive => "a scheduled gain is not positive somewhere in this range".to_owned(),
+            ScheduleCaution::CostsMore(cost) => {
+                let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
+                format!(
+                    "condition {}, model {}: mean on-axis J {scheduled} with the schedule, {own} with the condition's own correction",
+                    cost.condition, cost.model
+                )
+            }
         }
     }
 }

@@ -85,7 +85,8 @@ impl Analysis {
         if let Some(choice) = others.choices.get_mut(&left_out) {
             choice.scheduled = false;
         }
-        Schedule::of(&scheduled_points(&others, &self.conditions), self.study.settings.schedule)
+        let settings = schedule_settings(&others, &self.conditions);
+        Schedule::of(&scheduled_points(&others, &self.conditions), settings)
     }
 
     /// What speaks for each form of the schedule, its lists in the order of [`Analysis::scheduled`] (M11). Some hundred small

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::schedule::{ScheduleCaution, ScheduledPoint};
+use crate::schedule::{DelayScheduling, NOTABLE_DELAY_S, ScheduleCaution, ScheduleSettings, ScheduledPoint};
 
 use super::*;
 
@@ -101,7 +101,8 @@ impl Engine {
         let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
         let doubts = doubts_of(study, &mut conditions);
-        let mut schedule = Schedule::of(&scheduled_points(study, &conditions), study.settings.schedule);
+        let settings = schedule_settings(study, &conditions);
+        let mut schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
         if let Ok(schedule) = &mut schedule {
             schedule.cautions.extend(signed_delays_apart(study, &conditions));
         }
@@ -123,6 +124,10 @@ impl Engine {
         let assess = |place: usize| Ok(assessed(&analysis, ids[place], choice)?.changes);
         let assessment = execution.each(ids.len(), 0, assess)?;
         analysis.assessment = ids.into_iter().zip(assessment).collect();
+        let costs = schedule_losses::schedule_cost_cautions(&analysis);
+        if let Ok(schedule) = &mut analysis.schedule {
+            schedule.cautions.extend(costs);
+        }
         Ok(analysis)
     }
 
@@ -303,6 +308,21 @@ pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec
         }
     };
     in_schedule(study, outcomes).map(point).collect()
+}
+
+/// The settings of the schedule of these conditions, with what the choice of delays comes to in them (M11).
+pub(super) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
+    let delays = match study.settings.schedule_delays {
+        DelayScheduling::Always => true,
+        DelayScheduling::Never => false,
+        DelayScheduling::Automatic => in_schedule(study, outcomes).any(has_notable_delay),
+    };
+    ScheduleSettings { delays, ..study.settings.schedule }
+}
+
+/// Whether a constrained response has a net delay above half a millisecond.
+fn has_notable_delay(result: &ConditionAnalysis) -> bool {
+    result.held().marked().any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
 /// The results of the conditions that are in the schedule, in file order.

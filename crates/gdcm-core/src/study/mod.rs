@@ -25,6 +25,7 @@ mod required_bandwidth;
 mod required_modes;
 mod requirements;
 mod requirements_tables;
+mod schedule_losses;
 pub mod setting;
 mod setting_row;
 mod settings;
@@ -65,8 +66,8 @@ pub use self::{
     analysis::*, assessment_table::*, caution::*, changed_models::*, channel_time_skew::*, comparison::*,
     condition_answers::*, condition_responses::*, convention_doubt::*, couplings_assessment::*, couplings_words::*,
     differences::*, edit::*, engine::*, execution::*, fitted_couplings::*, job::*, lead_compensation::*, remark::*,
-    required_bandwidth::*, required_modes::*, requirements::*, requirements_tables::*, setting_row::*, settings::*,
-    substitutions::*, table::*, time_histories::*, uncertainty::*,
+    required_bandwidth::*, required_modes::*, requirements::*, requirements_tables::*, schedule_losses::*,
+    setting_row::*, settings::*, substitutions::*, table::*, time_histories::*, uncertainty::*,
 };
 use self::{condition_stages::*, time_history_tables::*};
 pub use crate::progress::{Cancelled, Progress, Unobserved};

@@ -83,7 +83,8 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let words = schedule.cautions.iter().map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
+        let cautions = schedule.cautions.iter().filter(|caution| caution.concerns(result.condition.id()));
+        let words = cautions.map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }
     remarks

@@ -3,7 +3,7 @@
 
 use crate::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
 use crate::response::LeadOrder;
-use crate::schedule::ScheduleKind;
+use crate::schedule::{DelayScheduling, ScheduleKind};
 
 use super::*;
 
@@ -17,12 +17,17 @@ const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: K
         digits: Digits::Significant,
         applies: |_| true,
     };
-    Setting { name, key, option, help, unit: Unit { file: "", shown: "", scale: 1.0 }, kind, control }
+    Setting { name, key, option, bare: None, help, unit: Unit { file: "", shown: "", scale: 1.0 }, kind, control }
 }
 
 impl Setting {
     const fn unit(self, file: &'static str, shown: &'static str, scale: f64) -> Self {
         Self { unit: Unit { file, shown, scale }, ..self }
+    }
+
+    /// The word that its option stands for without a value.
+    const fn bare(self, word: &'static str) -> Self {
+        Self { bare: Some(word), ..self }
     }
 
     /// Where its control stands, after which caption, under which accessible name.
@@ -403,15 +408,24 @@ pub static SCHEDULED_QUANTITY: Setting = row(
 
 /// Whether delays are scheduled too.
 pub static SCHEDULE_DELAYS: Setting = row(
-    ["delays", "schedule.delays", "--schedule-delays"],
-    "Schedule the delays of the channels too, clamped to their bounds (M11)",
-    Kind::Flag {
-        words: ["not scheduled", "scheduled"],
-        get: |of| of.schedule.delays,
-        set: |of, delays| of.schedule.delays = delays,
-    },
+    ["delays over airspeed", "schedule_delays", "--schedule-delays"],
+    "Schedule the delays of the channels too, clamped to their bounds (M11); without a value: always",
+    choice(
+        &[
+            [
+                "automatic",
+                "delays automatic",
+                "With the gains, where a held response has a net delay above 0.5 ms in a scheduled condition",
+            ],
+            ["always", "delays too", "Delays are scheduled with the gains"],
+            ["never", "no delays", "Gains alone (the paper)"],
+        ],
+        |of| of.schedule_delays.index(),
+        |of, index| of.set_delay_scheduling(DelayScheduling::ALL[index]),
+    ),
 )
-.at(Place::Line, "Over airspeed", "delays too")
+.bare("always")
+.at(Place::Line, "Over airspeed", "Schedule of delays")
 .where_it(|study| !has_leads(study));
 
 /// Degree of the polynomial of signed delays.

@@ -1,7 +1,8 @@
 //! What a row of the table of settings says, and what can be done with it: give it a value, refuse one, tell it, read it.
 
 use crate::response::LeadOrder;
-use crate::schedule::{SCHEDULE_KINDS, ScheduleKind};
+use crate::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use crate::units::six_digits;
 
 use super::*;
 
@@ -14,6 +15,8 @@ pub struct Setting {
     pub key: &'static str,
     /// Its option of the command line: "--alpha".
     pub option: &'static str,
+    /// The word that the option stands for where no value follows it; none where one has to follow.
+    pub bare: Option<&'static str>,
     /// What it means, in a sentence.
     pub help: &'static str,
     /// Its unit.
@@ -196,6 +199,10 @@ impl Choice for ScheduleKind {
     const ALL: &'static [Self] = &SCHEDULE_KINDS;
 }
 
+impl Choice for DelayScheduling {
+    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
+}
+
 impl Choice for ScheduledQuantity {
     const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
 }
@@ -331,14 +338,14 @@ impl Setting {
         self.text(self.value(settings))
     }
 
-    /// A value in words: "20 ms", "by the quantile", "median".
+    /// A value in words, with at most six significant digits: "20 ms", "by the quantile", "median".
     pub fn text(&self, value: Value) -> String {
         let Unit { shown, scale, .. } = self.unit;
         let unit = if shown.is_empty() { String::new() } else { format!(" {shown}") };
         match (self.kind, value) {
-            (_, Value::Number(value)) => format!("{}{unit}", number(scale * value)),
+            (_, Value::Number(value)) => format!("{}{unit}", six_digits(scale * value)),
             (_, Value::Range([lower, upper])) => {
-                format!("{} to {}{unit}", number(scale * lower), number(scale * upper))
+                format!("{} to {}{unit}", six_digits(scale * lower), six_digits(scale * upper))
             }
             (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
             (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),

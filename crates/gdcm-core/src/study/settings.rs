@@ -4,7 +4,7 @@
 use crate::correction::LeadSettings;
 use crate::couplings::CouplingKind;
 use crate::dataset::limits::MOST_PAIRS;
-use crate::schedule::ScheduleSettings;
+use crate::schedule::{DelayScheduling, ScheduleSettings};
 use crate::uncertainty::UncertaintySettings;
 use crate::whole_number::whole;
 
@@ -150,12 +150,20 @@ pub struct Settings<R = PairTable<bool>> {
     /// How channel gains are scheduled with airspeed (M11).
     #[serde(default)]
     pub schedule: ScheduleSettings,
+    /// Whether the schedule has delays too (M11). Files of older programs say it in `schedule.delays` alone
+    /// ([`Settings::complete_delay_scheduling`]).
+    #[serde(default = "never_scheduled")]
+    pub schedule_delays: DelayScheduling,
     /// Which models G is taken from.
     #[serde(default, rename = "gain_from")]
     pub gain_source: GainSource,
     /// How bars are made (M13).
     #[serde(default, rename = "error_bars")]
     pub uncertainty: UncertaintySettings,
+}
+
+fn never_scheduled() -> DelayScheduling {
+    DelayScheduling::Never
 }
 
 fn default_agreement_db() -> f64 {
@@ -188,8 +196,22 @@ impl<R> Settings<R> {
             couplings: self.couplings,
             agreement_db: self.agreement_db,
             schedule: self.schedule,
+            schedule_delays: self.schedule_delays,
             gain_source: self.gain_source,
             uncertainty: self.uncertainty,
+        }
+    }
+
+    /// Sets whether the schedule has delays, with the flag that older programs read in its place.
+    pub fn set_delay_scheduling(&mut self, scheduling: DelayScheduling) {
+        self.schedule_delays = scheduling;
+        self.schedule.delays = scheduling == DelayScheduling::Always;
+    }
+
+    /// Takes over `schedule.delays` of a file that says nothing else: `true` is always, `false` never.
+    pub fn complete_delay_scheduling(&mut self) {
+        if self.schedule_delays == DelayScheduling::Never {
+            self.set_delay_scheduling(self.schedule.delays.into());
         }
     }
 }
@@ -217,6 +239,7 @@ impl Settings {
             couplings: CouplingCorrection::default(),
             agreement_db: DEFAULT_AGREEMENT_DB,
             schedule: ScheduleSettings::default(),
+            schedule_delays: DelayScheduling::default(),
             gain_source: GainSource::default(),
             uncertainty: UncertaintySettings::default(),
         }

@@ -103,6 +103,7 @@ impl Substituting<'_> {
         let Study { settings, dataset, .. } = self.run.study;
         let mut settings = settings.clone();
         settings.schedule = Default::default();
+        settings.schedule_delays = Default::default();
         settings.uncertainty = Default::default();
         settings.gain_source = GainSource::Representatives;
         (settings, dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())

@@ -1,6 +1,7 @@
 //! A table of what was found, to be read, copied and saved: the same texts wherever it goes.
 
 use crate::uncertainty::VarianceDecomposition;
+use crate::units::without_sign_of_zero;
 
 use super::*;
 
@@ -21,9 +22,9 @@ impl Table {
         Self { title: title.into(), columns: columns.into_iter().map(Into::into).collect(), rows: Vec::new() }
     }
 
-    /// Adds a row; cells beyond the last column are left out, missing ones are empty.
+    /// Adds a row; cells beyond the last column are left out, missing ones are empty, a zero has no sign.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
-        let mut cells: Vec<String> = cells.into_iter().map(Into::into).collect();
+        let mut cells: Vec<String> = cells.into_iter().map(|cell| unsigned_zero(cell.into())).collect();
         cells.resize(self.columns.len(), String::new());
         self.rows.push(cells);
     }
@@ -55,6 +56,12 @@ impl Table {
         let mut cells = self.rows.iter().map(|row| row[column].as_str()).filter(|cell| !cell.is_empty()).peekable();
         cells.peek().is_some() && cells.all(is_number)
     }
+}
+
+/// The cell, a zero without its sign.
+fn unsigned_zero(cell: String) -> String {
+    let unsigned = without_sign_of_zero(&cell);
+    if unsigned.len() == cell.len() { cell } else { unsigned.to_owned() }
 }
 
 /// Whether a text is a number, with whichever minus sign and a unit behind it or none, or the dash that stands for none.
@@ -205,6 +212,13 @@ pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_zero_has_no_sign() {
+        let mut table = Table::new("", ["a", "b", "c"]);
+        table.row(["-0.0", "−0.00", "-0.01"]);
+        assert_eq!(table.rows, [["0.0", "0.00", "-0.01"]]);
+    }
 
     #[test]
     fn words_stand_at_the_left_and_figures_at_the_right() {

@@ -8,7 +8,7 @@ use gdcm_core::correction::{
 };
 use gdcm_core::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
 use gdcm_core::fidelity::Cost;
-use gdcm_core::schedule::{Regression, Schedule, ScheduleKind, ScheduledQuantity};
+use gdcm_core::schedule::{Regression, Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity};
 use gdcm_core::study::{
     Analysis, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment, lead_cautions,
 };
@@ -16,6 +16,7 @@ use serde_json::{Map, Value, json};
 
 use crate::corrections_file::uncertainty::{bars, net_gain_bar, uncertainty};
 use crate::corrections_file::{NAME, VERSION};
+use crate::export_contents::ExportContents;
 
 /// Everything that was found in the chosen conditions, with the schedule of the whole study, as `corrections.json` holds it. The
 /// documentation of file formats says what each key means.
@@ -48,6 +49,9 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
             })),
         }
     }
+    let mut settings = analysis.study.settings.named(dataset);
+    // Readers of older programs find there whether the schedule below has delays.
+    settings.schedule.delays = analysis.schedule.as_ref().is_ok_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
         "version": VERSION,
@@ -55,8 +59,9 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         "dataset": {"name": dataset.name(), "sha256": sha256},
         "inputs": channels(dataset.inputs()),
         "outputs": channels(dataset.outputs()),
-        "settings": analysis.study.settings.named(dataset),
+        "settings": settings,
         "signs": analysis.study.turned_channels(),
+        "contains": ExportContents::of_results(analysis).json(dataset),
         "couplings": couplings(analysis),
         "conditions": conditions,
         "failed": failed,
@@ -379,8 +384,39 @@ impl<'a> ChannelNames<'a> {
             }),
             "table": table.collect::<Value>(),
             "cautions": schedule.cautions.iter().map(|of| of.words(&self.inputs, &self.outputs)).collect::<Value>(),
+            "caution_notes": schedule.cautions.iter().map(|of| self.schedule_caution(of)).collect::<Value>(),
         });
-        without_empty(used, &["second_variable", "tau_s"])
+        without_empty(used, &["second_variable", "tau_s", "caution_notes"])
+    }
+
+    /// A caution about the schedule by its code, with its figures where it is about one condition.
+    fn schedule_caution(&self, caution: &ScheduleCaution) -> Value {
+        let text = caution.words(&self.inputs, &self.outputs);
+        match caution {
+            ScheduleCaution::CostsMore(cost) => json!({
+                "code": caution.code(),
+                "condition": cost.condition.0,
+                "model": cost.model,
+                "value": cost.scheduled,
+                "own": cost.own,
+                "unit": "J",
+                "text": text,
+            }),
+            ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s } => json!({
+                "code": caution.code(),
+                "condition": condition.0,
+                "channel": channel.name(&self.inputs, &self.outputs),
+                "value": tau_s,
+                "elsewhere": elsewhere_s,
+                "unit": "s",
+                "text": text,
+            }),
+            ScheduleCaution::DegreeLowered { .. }
+            | ScheduleCaution::Overshoot { .. }
+            | ScheduleCaution::NotPositive => {
+                json!({"code": caution.code(), "text": text})
+            }
+        }
     }
 }
 

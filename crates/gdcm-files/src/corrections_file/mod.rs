@@ -14,6 +14,7 @@ use gdcm_core::schedule::CostChange;
 use gdcm_core::study::{Analysis, ConditionAnalysis};
 use gdcm_core::uncertainty::{Bar, Scalar, VarianceComponent};
 
+use crate::export_contents::ExportContents;
 use crate::figure::all_channels;
 use crate::figure_file::write_records;
 use crate::file_error::FileError;
@@ -73,6 +74,8 @@ struct Found<'a> {
     analysis: &'a Analysis,
     condition: &'a Condition,
     scheduled: Option<ChannelCorrection>,
+    /// What the file contains of the corrections, and what it leaves out, in words.
+    contains: String,
 }
 
 /// A channel of a condition.
@@ -92,7 +95,7 @@ type ChannelColumn = (&'static str, fn(&ChannelRow<'_>) -> String);
 /// A column of the table of responses.
 type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
-const CHANNEL_COLUMNS: [ChannelColumn; 22] = [
+const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
     ("condition", |row| row.found.condition.id().to_string()),
     ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
     ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
@@ -115,6 +118,7 @@ const CHANNEL_COLUMNS: [ChannelColumn; 22] = [
     ("u_gain_identification", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)),
     ("gain_above_band_db", |row| cell(row.price().map(|price| price.gains_db[row.channel]))),
     ("not_valid_above_rad_s", |row| cell(row.price().map(|price| price.limit_rad_s))),
+    ("contains", |row| row.found.contains.clone()),
 ];
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
@@ -199,9 +203,15 @@ pub(super) fn response_table(
 fn conditions<'a>(analysis: &'a Analysis, chosen: &BTreeSet<ConditionId>) -> impl Iterator<Item = Found<'a>> {
     let conditions = analysis.study.dataset.conditions();
     let chosen = conditions.iter().filter(|condition| chosen.contains(&condition.id()));
-    chosen.map(|condition| {
+    let contents = ExportContents::of_results(analysis);
+    let mut contains = contents.words();
+    for words in contents.left_out_words(&analysis.study.dataset) {
+        contains.push_str(&format!("; left out: {words}"));
+    }
+    chosen.map(move |condition| {
+        let contains = contains.clone();
         let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at_state(condition.flight_state()));
-        Found { analysis, condition, scheduled }
+        Found { analysis, condition, scheduled, contains }
     })
 }
 

@@ -9,6 +9,7 @@ use serde_json::{Value as Tree, json};
 use super::matlab_struct::{Layout, cell_of_texts};
 use super::{Export, ExportFormat, Exported};
 use crate::corrections_file::{channel_table, corrections, write_corrections};
+use crate::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::variables::{Value, Variable};
 
@@ -19,6 +20,7 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     words: "corrections.json alone",
     options: &[],
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_results(analysis),
     export: |of| {
         let Export { analysis, source, .. } = *of;
         Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file))
@@ -33,6 +35,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     words: "corrections.csv alone",
     options: &[],
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_results(analysis),
     export: |of| {
         let analysis = of.analysis;
         Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)).with(of.price()))
@@ -46,6 +49,7 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     words: "MATLAB data: all corrections as one struct",
     options: &[],
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_results(analysis),
     export: |of| {
         let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
         let value = corrections_struct(corrections, &of.analysis.study.dataset);

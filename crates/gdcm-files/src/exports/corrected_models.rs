@@ -6,7 +6,7 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 
 use gdcm_core::assembly::{Facts, FoundModel};
-use gdcm_core::correction::{ChannelCorrection, CorrectedModel, LeadPrice};
+use gdcm_core::correction::{self, ChannelCorrection, CorrectedModel, LeadPrice};
 use gdcm_core::dataset::{
     BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
 };
@@ -15,9 +15,10 @@ use gdcm_core::units::{number, telling};
 
 use super::matlab_struct::{Fields, cell_of_texts, matrix, records};
 use super::{ExportFault, ExportFormat, ExportRequest, Exported, ExportedRole};
+use crate::export_contents::{ExportContents, LeftOutPart, PartSource};
 use crate::formats::mat;
 use crate::formats::npy::write_npz;
-use crate::models_file::{bare_draft, labels, write_models};
+use crate::models_file::{ContainingModel, bare_draft, labels, write_containing_models};
 use crate::variables::{TextArray, Value, Variable};
 
 /// Corrected models, in the format that the end of the file's name says.
@@ -27,6 +28,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     words: "Corrected models as state-space",
     options: &["--condition", "--model", "--correction", "--pade"],
     check_path: |path| ModelsFormat::of(path).map(drop),
+    contents: |analysis, request| contents_of(analysis, request),
     export: |of| {
         let models = exported_models(of.analysis, of.request)?;
         let dataset = &of.analysis.study.dataset;
@@ -36,8 +38,8 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
             ModelsFormat::Mat => Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?),
             ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
             ModelsFormat::Json => {
-                let models = found_models(&models, dataset);
-                Exported::new(move |file| write_models(&models, file))
+                let models = containing_models(&models, dataset);
+                Exported::new(move |file| write_containing_models(&models, file))
             }
         };
         Ok(exported.with(remarks))
@@ -84,8 +86,13 @@ struct ExportedModel {
     lead_states: usize,
     /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
     pade_order: usize,
-    /// Greatest phase error at the top of the band \[deg\].
-    phase_error_deg: f64,
+    /// Greatest phase error of its approximants at the top of the band \[deg\].
+    approximation_error_deg: f64,
+    /// Greatest phase there \[deg\] that delays of the condition's own correction would add, where it is under the schedule and that has
+    /// none.
+    left_out_deg: f64,
+    /// What of the correction is in it.
+    contents: ExportContents,
     /// Top of the band of comparison \[rad/s\].
     band_top_rad_s: f64,
     /// What its lead filters cost, with that in words; none where it has none.
@@ -104,6 +111,32 @@ fn exported_models(analysis: &Analysis, request: &ExportRequest) -> Result<Vec<E
     let asked = |condition: &&Arc<Condition>| request.condition.is_none_or(|id| id == condition.id());
     let conditions = dataset.conditions().iter().filter(asked);
     conditions.map(|condition| exported_model(analysis, request, condition)).collect()
+}
+
+/// What the models of a request contain; of a study without the schedule that is asked for, nothing.
+fn contents_of(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
+    let dataset = &analysis.study.dataset;
+    let conditions: Vec<ConditionId> = match request.condition {
+        Some(condition) => vec![condition],
+        None => dataset.ids().collect(),
+    };
+    let contents = ExportContents::of_models(analysis, request.correction, &conditions);
+    contents.unwrap_or_else(|_| ExportContents::of_scheduled(analysis))
+}
+
+/// The greatest phase \[deg\] at `omega` \[rad/s\] that the delays of a condition's own correction add and an export leaves out.
+fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
+    let (mut input_s, mut output_s) = (0.0_f64, 0.0_f64);
+    for part in &contents.left_out {
+        let LeftOutPart::Delay(delayed) = part else { continue };
+        for own in &delayed.delays {
+            match delayed.channel {
+                correction::Channel::Input(_) => input_s = input_s.max(own.delay_s),
+                correction::Channel::Output(_) => output_s = output_s.max(own.delay_s),
+            }
+        }
+    }
+    (omega * (input_s + output_s)).to_degrees()
 }
 
 fn exported_model(
@@ -126,6 +159,7 @@ fn exported_model(
     let price = correction.leads.as_ref().and_then(LeadPrice::of);
     let band_top_rad_s = analysis.study.settings.band.max();
     let is_sampled = dynamics.timing().sample_time_s.is_some();
+    let contents = ExportContents::of_models(analysis, request.correction, &[id]).map_err(ExportFault::Schedule)?;
     Ok(ExportedModel {
         condition: id,
         airspeed_kt: condition.flight_state().airspeed_kt,
@@ -140,7 +174,9 @@ fn exported_model(
         delay_states: corrected.delay_states.iter().map(|(_, states)| states).sum(),
         lead_states: corrected.lead_states.iter().map(|(_, states)| states).sum(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
-        phase_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
+        approximation_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
+        left_out_deg: left_out_phase_deg(&contents, band_top_rad_s),
+        contents,
         band_top_rad_s,
         price: price.map(|price| {
             let words = price.words(&inputs, &outputs);
@@ -224,12 +260,18 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
 }
 
 impl ExportedModel {
+    /// Greatest phase error at the top of the band against the condition's own correction of delays \[deg\], as far as it is due to
+    /// the export: of approximants, and of delays that are left out.
+    fn phase_error_deg(&self) -> f64 {
+        self.approximation_error_deg + self.left_out_deg
+    }
+
     /// What it is and how exact, in one line.
     fn words(&self) -> String {
         let Self { condition, name, correction, .. } = self;
         let price = self.price.as_ref().map(|(_, words)| format!("; {words}")).unwrap_or_default();
-        let (delays, couplings) = (self.delay_words(), self.couplings);
-        format!("condition {condition}, model {name}, {correction} correction: {delays}{couplings}{price}")
+        let (delays, left_out, couplings) = (self.delay_words(), self.left_out_words(), self.couplings);
+        format!("condition {condition}, model {name}, {correction} correction: {delays}{left_out}{couplings}{price}")
     }
 
     /// The gain at ten times the band that the leads of the response that pays most add \[dB\]; 0 without leads.
@@ -238,12 +280,22 @@ impl ExportedModel {
         self.price.as_ref().map_or(0.0, |(price, _)| most(&price.gains_db.inputs) + most(&price.gains_db.outputs))
     }
 
-    /// How exact its delays are.
+    /// That delays of the condition's own correction are not in it, and what that is at the top of the band; else nothing.
+    fn left_out_words(&self) -> String {
+        if self.left_out_deg == 0.0 {
+            return String::new();
+        }
+        let (left_out, top) = (telling(self.left_out_deg, 3), number(self.band_top_rad_s));
+        format!("; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s")
+    }
+
+    /// Which parts are in it, and how exact they are; never a word of exactness about delays that are not in it.
     fn delay_words(&self) -> String {
+        let has_delays = self.contents.delays != PartSource::None;
         if self.pade_order == 0 && self.lead_states > 0 {
             return format!(
                 "gains and delays exact, lead filters by Tustin's rule, phase error up to {} deg at {} rad/s",
-                telling(self.phase_error_deg, 3),
+                bound_words(self.approximation_error_deg),
                 number(self.band_top_rad_s)
             );
         }
@@ -251,16 +303,25 @@ impl ExportedModel {
             return "gains and lead filters exact".to_owned();
         }
         if self.pade_order == 0 || self.delay_states == 0 {
-            return "gains and delays exact".to_owned();
+            return if has_delays { "gains and delays exact" } else { "gains exact, without delays" }.to_owned();
         }
         format!(
-            "{} exact, delays by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
+            "{} exact, {} by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
             if self.lead_states > 0 { "gains and lead filters" } else { "gains" },
+            if has_delays { "delays" } else { "the model's own delays" },
             self.pade_order,
-            telling(self.phase_error_deg, 3),
+            bound_words(self.approximation_error_deg),
             number(self.band_top_rad_s)
         )
     }
+}
+
+/// An upper bound of a phase error \[deg\] in words: nothing below a thousandth of a degree is told apart.
+fn bound_words(error_deg: f64) -> String {
+    /// The least bound that is told.
+    const LEAST_DEG: f64 = 1e-3;
+    let bound_deg = if error_deg > 0.0 { error_deg.max(LEAST_DEG) } else { 0.0 };
+    format!("{bound_deg:.3}")
 }
 
 /// The models under the names "condition 10, nominal"; their notes say what was done to them and how exact it is.
@@ -283,6 +344,15 @@ fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> 
     models.iter().map(found).collect()
 }
 
+/// The same models, each with its block `contains`.
+fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
+    let mut containing = Vec::new();
+    for (model, exported) in found_models(models, dataset).into_iter().zip(models) {
+        containing.push(ContainingModel { model, contains: exported.contents.json(dataset) });
+    }
+    containing
+}
+
 /// The variable `models`: one record for each model, with the properties of MATLAB's `ss`: `ss(m.A, m.B, m.C, m.D, m.Ts)`.
 fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
     let names = |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
@@ -302,6 +372,12 @@ fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
         }
         fields.add("model", Value::text(&model.name));
         fields.add("correction", Value::text(model.correction));
+        let mut contains = Fields::default();
+        for (name, source) in model.contents.parts() {
+            contains.add(name, Value::text(source.word()));
+        }
+        contains.add("left_out", cell_of_texts(model.contents.left_out_words(dataset)));
+        fields.add("contains", contains.record());
         fields
     };
     Variable { name: "models".to_owned(), value: records(models.iter().map(record).collect()) }
@@ -315,10 +391,20 @@ const METRICS: [Metric; 8] = [
     ("condition", |model| model.condition.0 as f64),
     ("airspeed_kt", |model| model.airspeed_kt),
     ("pade_order", |model| model.pade_order as f64),
-    ("phase_error_deg", |model| model.phase_error_deg),
+    ("phase_error_deg", ExportedModel::phase_error_deg),
     ("band_top_rad_s", |model| model.band_top_rad_s),
     ("not_valid_above_rad_s", |model| model.price.as_ref().map_or(f64::INFINITY, |(price, _)| price.limit_rad_s)),
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
+];
+
+/// A part of a correction by its name, and where it comes from.
+type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
+
+const CONTAINED: [ContainedPart; 4] = [
+    ("gains", |contents| contents.gains),
+    ("delays", |contents| contents.delays),
+    ("leads", |contents| contents.leads),
+    ("couplings", |contents| contents.couplings),
 ];
 
 /// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in
@@ -343,6 +429,12 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     variables.push(variable("model".to_owned(), row_of_texts(models.iter().map(|model| &model.name))));
     let corrections = models.iter().map(|model| model.correction);
     variables.push(variable("correction".to_owned(), row_of_texts(corrections)));
+    for (name, source) in CONTAINED {
+        let words = models.iter().map(|model| source(&model.contents).word());
+        variables.push(variable(format!("contains_{name}"), row_of_texts(words)));
+    }
+    let left_out = models.iter().map(|model| model.contents.left_out_words(dataset).join("; "));
+    variables.push(variable("contains_left_out".to_owned(), row_of_texts(left_out)));
     variables
 }
 
@@ -375,6 +467,32 @@ mod tests {
     use crate::embedded_example;
     use crate::formats::zip_files::read_npz;
     use crate::variables::ReadingBudget;
+
+    #[test]
+    fn a_delay_that_the_schedule_leaves_out_is_named_and_counts_as_an_error_of_phase() {
+        let study = Study::new(embedded_example().unwrap().dataset);
+        let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
+        let models = exported_models(&analysis, &ExportRequest::default()).unwrap();
+        let nx = correction::Channel::Output(3);
+        for model in &models {
+            let id = model.condition;
+            let own_s = analysis.condition(id).unwrap().correction.pure_delay_s(nx);
+            let [LeftOutPart::Delay(left_out)] = &model.contents.left_out[..] else {
+                assert!(model.contents.left_out.is_empty() && own_s < 5e-5, "condition {id}: {own_s} s");
+                assert_eq!(model.phase_error_deg(), 0.0);
+                assert!(model.words().contains("gains exact, without delays"), "{}", model.words());
+                continue;
+            };
+            assert_eq!((id, left_out.channel), (ConditionId(4), nx));
+            let phase_deg = (12.0 * own_s).to_degrees();
+            assert!((model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1, "{phase_deg}");
+            assert!(model.words().contains("are left out, up to"), "{}", model.words());
+        }
+        let own = ExportRequest { correction: AssessedCorrection::Own, ..ExportRequest::default() };
+        let own = exported_models(&analysis, &own).unwrap();
+        assert!(own.iter().all(|model| model.contents.left_out.is_empty() && model.left_out_deg == 0.0));
+        assert!(own.iter().all(|model| model.contents.delays == PartSource::Own));
+    }
 
     #[test]
     fn numpy_and_matlab_get_the_same_matrices_and_names() {

@@ -9,6 +9,7 @@ use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row};
 use super::programs::comment;
 use super::scheduled::{Scheduled, number};
 use super::{ExportFault, ExportFormat, Exported};
+use crate::export_contents::ExportContents;
 use crate::figure::all_channels;
 use crate::formats::mat;
 use crate::variables::{Value, Variable};
@@ -20,6 +21,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     words: "Lookup table over airspeed, CSV",
     options: OPTIONS,
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |of| {
         let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
         Ok(Exported::bytes(table.csv()).with(table.remarks()))
@@ -33,6 +35,7 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     words: "Lookup table over airspeed, MATLAB data",
     options: OPTIONS,
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |of| {
         let table = BreakpointTable::of(of.scheduled()?, of.request.breakpoints_kt.as_deref())?;
         Ok(Exported::bytes(mat::write(&[table.variable()])?).with(table.remarks()))
@@ -114,7 +117,7 @@ impl<'e> BreakpointTable<'e> {
             .map_or_else(|| vec![None], |term| [term.range[0], term.middle(), term.range[1]].map(Some).to_vec());
         let at = |second: Option<f64>| airspeeds_kt.iter().map(move |&airspeed_kt| (airspeed_kt, second));
         let rows = second.iter().flat_map(|&second| at(second)).collect();
-        let mut table = Self { of, airspeeds_kt, rows, columns: Vec::new() };
+        let mut table = Self { of: of.clone(), airspeeds_kt, rows, columns: Vec::new() };
         for channel in all_channels(of.dataset) {
             let evaluate = |kt, second| of.schedule.evaluate(kt, second);
             let gain = |kt, second| evaluate(kt, second).gain(channel);
@@ -258,6 +261,12 @@ impl<'e> BreakpointTable<'e> {
             fields.add("input_gain_above_band_db", row(price.gains_db.inputs.iter().copied()));
             fields.add("output_gain_above_band_db", row(price.gains_db.outputs.iter().copied()));
         }
+        let mut contains = Fields::default();
+        for (name, source) in self.of.contents.parts() {
+            contains.add(name, Value::text(source.word()));
+        }
+        contains.add("left_out", cell_of_texts(self.of.contents.left_out_words(self.of.dataset)));
+        fields.add("contains", contains.record());
         fields.add("interpolation", Value::text("linear between the airspeeds, the end values outside"));
         Variable { name: "gdcm_table".to_owned(), value: fields.record() }
     }
@@ -348,7 +357,7 @@ fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use gdcm_core::correction::ChannelCorrection;
-    use gdcm_core::schedule::SecondVariable;
+    use gdcm_core::schedule::{DelayScheduling, SecondVariable};
     use gdcm_core::study::{Analysis, Engine, Study, Unobserved};
 
     use super::super::ExportSource;
@@ -374,14 +383,16 @@ mod tests {
 
     fn analysis(second: Option<SecondVariable>) -> Analysis {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        study.settings.schedule.delays = true;
+        study.settings.set_delay_scheduling(DelayScheduling::Always);
         study.settings.schedule.second = second;
         Engine::default().analyze(&study, &Unobserved).unwrap()
     }
 
     fn table<'a>(analysis: &'a Analysis, source: &'a ExportSource) -> BreakpointTable<'a> {
         let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
-        BreakpointTable::of(Scheduled { schedule, dataset, source, couplings: None }, Some(&POINTS)).unwrap()
+        let contents = ExportContents::of_scheduled(analysis);
+        let of = Scheduled { schedule, dataset, source, couplings: None, contents };
+        BreakpointTable::of(of, Some(&POINTS)).unwrap()
     }
 
     fn source() -> ExportSource {
@@ -414,7 +425,10 @@ mod tests {
         let line = format!("\n# gain of input LON: {:.3e} % at {:.3} kt\n", worst.error, worst.airspeed_kt);
         assert!(table.csv().contains(&line), "{}", table.csv());
         for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {
-            assert!(matches!(BreakpointTable::of(table.of, Some(points)), Err(ExportFault::Breakpoints)), "{points:?}");
+            assert!(
+                matches!(BreakpointTable::of(table.of.clone(), Some(points)), Err(ExportFault::Breakpoints)),
+                "{points:?}"
+            );
         }
     }
 

@@ -18,6 +18,7 @@ use gdcm_core::schedule::ScheduleError;
 use gdcm_core::study::{Analysis, AssessedCorrection};
 use scheduled::Scheduled;
 
+use crate::export_contents::ExportContents;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 use crate::variables::VariableFault;
@@ -35,6 +36,8 @@ pub struct ExportFormat {
     pub options: &'static [&'static str],
     /// Refuses a name of a file that does not fit: a question for before the work.
     check_path: fn(&Path) -> Result<(), ExportFault>,
+    /// What the file contains of the correction.
+    contents: fn(&Analysis, &ExportRequest) -> ExportContents,
     /// The contents of the file.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
@@ -135,7 +138,8 @@ impl<'e> Export<'e> {
         let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
         let couplings = self.analysis.asked_couplings().map_err(|why| ExportFault::NoCouplings { why })?;
         let couplings = couplings.map(|fitted| fitted.matrices());
-        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source, couplings })
+        let contents = ExportContents::of_scheduled(self.analysis);
+        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source, couplings, contents })
     }
 }
 
@@ -171,7 +175,13 @@ pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> 
     (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
-/// Writes what a request asks for, and gives what is to be known of it, line by line.
+/// What the file of a request contains of the correction.
+pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
+    (request.format.contents)(analysis, request)
+}
+
+/// Writes what a request asks for, and gives what is to be known of it, line by line; what it contains is told by
+/// [`export_contents`].
 pub fn write_export(
     analysis: &Analysis,
     source: &ExportSource,

@@ -12,6 +12,7 @@ use minijinja::{Environment, Value, context};
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
 use super::{Export, ExportFault, ExportFormat, Exported};
+use crate::export_contents::ExportContents;
 use crate::figure::all_channels;
 
 /// A programming language: the template of a file, and how it writes the value of a curve.
@@ -37,6 +38,7 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     words: "MATLAB function of airspeed",
     options: &[],
     check_path: |path| check_function_name(&stem(path)),
+    contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |of| {
         let language = Language {
             template: include_str!("templates/matlab_function.m.jinja"),
@@ -59,6 +61,7 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     words: "Python module, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |of| {
         let language = Language {
             template: include_str!("templates/python_module.py.jinja"),
@@ -81,6 +84,7 @@ pub(super) const C: ExportFormat = ExportFormat {
     words: "C header, a function of airspeed",
     options: &[],
     check_path: |_| Ok(()),
+    contents: |analysis, _| ExportContents::of_scheduled(analysis),
     export: |of| {
         let language = Language {
             template: include_str!("templates/c_header.h.jinja"),
@@ -138,6 +142,7 @@ impl Language {
             second,
             lead,
             couplings => of.couplings.map(|couplings| self.couplings(couplings)),
+            contains => self.contents(of),
             sides => vec![self.side(of, "Input", &inputs), self.side(of, "Output", &outputs)],
         };
         let mut environment = Environment::new();
@@ -145,6 +150,19 @@ impl Language {
             SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
         environment.set_syntax(whole_lines.map_err(io::Error::other)?);
         environment.render_str(self.template, values).map_err(io::Error::other)
+    }
+
+    /// What the file contains: for each part its name and where it comes from, and what is left out, as texts of the language.
+    fn contents(&self, of: &Scheduled<'_>) -> Value {
+        let mut parts = Vec::new();
+        for (name, source) in of.contents.parts() {
+            parts.push(context! { name, capitals => name.to_uppercase(), text => (self.text)(source.word()) });
+        }
+        let mut left_out = Vec::new();
+        for words in of.contents.left_out_words(of.dataset) {
+            left_out.push((self.text)(&words));
+        }
+        context! { parts, left_out }
     }
 
     /// `M~(V)` of the airspeed `V` clamped and scaled as the couplings take it, and `K`, row by row.
@@ -316,7 +334,7 @@ mod tests {
     use std::sync::Arc;
 
     use gdcm_core::dataset::Dataset;
-    use gdcm_core::schedule::{ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
+    use gdcm_core::schedule::{DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
     use gdcm_core::study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
     use nalgebra::DMatrix;
@@ -337,6 +355,7 @@ mod tests {
                     let mut study = Study::new(embedded_example().unwrap().dataset);
                     let schedule = ScheduleSettings { kind, quantity, delays, ..ScheduleSettings::default() };
                     study.settings.schedule = schedule;
+                    study.settings.set_delay_scheduling(delays.into());
                     let analysis = engine.analyze(&study, &Unobserved).unwrap();
                     analyses.push((format!("{kind:?}, {quantity:?}, delays {delays}"), analysis));
                 }
@@ -425,7 +444,8 @@ mod tests {
     fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
         for (words, analysis) in analyses() {
             let settings = &analysis.study.settings;
-            let has_delays = settings.schedule.delays || settings.phase == PhaseCorrection::Lead;
+            let has_delays =
+                settings.schedule_delays == DelayScheduling::Always || settings.phase == PhaseCorrection::Lead;
             let text = program("py", &analysis, "");
             assert_eq!(text.contains("# Note: delays are not scheduled in this study"), !has_delays, "{words}");
         }

@@ -9,16 +9,19 @@ use gdcm_core::schedule::{Regression, Schedule, ScheduledQuantity};
 
 use super::programs::comment;
 use super::{ExportFault, ExportSource};
+use crate::export_contents::ExportContents;
 use crate::figure::all_channels;
 
 /// A schedule, with the dataset and the study that it is of.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
     pub(super) dataset: &'e Dataset,
     pub(super) source: &'e ExportSource,
     /// Mixing and feedback of the model, where there are any.
     pub(super) couplings: Option<&'e CouplingMatrices>,
+    /// What a file of it contains.
+    pub(super) contents: ExportContents,
 }
 
 /// A gain, or a time \[s\], over airspeed.
@@ -115,8 +118,9 @@ impl Scheduled<'_> {
     /// What a file of it is, line by line, with these notes.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
+        let what = if self.schedule.has_delays() { "Gains and delays" } else { "Gains (no delays)" };
         let mut lines = vec![
-            "Gains and delays that correct a model of a helicopter, scheduled with airspeed.".to_owned(),
+            format!("{what} that correct a model of a helicopter, scheduled with airspeed."),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
             "Units: airspeed in knots, delays in seconds, gains without a unit.".to_owned(),
             format!(
@@ -153,6 +157,10 @@ impl Scheduled<'_> {
                 .map(str::to_owned),
             );
         }
+        lines.push(format!("Contains: {}.", self.contents.words()));
+        for words in self.contents.left_out_words(self.dataset) {
+            lines.push(format!("Left out: {}.", comment(&words)));
+        }
         lines.extend(notes.iter().map(|note| format!("Note: {}", comment(note))));
         lines
     }
@@ -174,5 +182,6 @@ impl Scheduled<'_> {
 
 /// A finite number with 17 significant digits: it comes back to the last one in every language.
 pub(super) fn number(value: f64) -> String {
-    format!("{value:.16e}")
+    // Adding zero turns minus zero into zero.
+    format!("{:.16e}", value + 0.0)
 }

@@ -63,6 +63,7 @@ pub use poles::*;
 pub use requirements::*;
 pub use responses::*;
 pub use role::*;
+pub use tables::LONG_COLUMNS;
 pub use thinning::{Pixel, thinned};
 
 /// Which of the program's figures.

@@ -1,4 +1,4 @@
-//! The numbers of a figure as tables: one for each panel, to the last digit.
+//! The numbers of a figure to the last digit: as one long table for programs, or as a table for each panel for people.
 
 use std::sync::Arc;
 
@@ -8,7 +8,17 @@ use gdcm_core::study::Table;
 use super::axis::Axis;
 use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
 
+/// The columns of a figure's long table.
+pub const LONG_COLUMNS: [&str; 8] = ["figure", "panel", "curve", "label", "x_quantity", "x", "y_quantity", "y"];
+
 impl Figure {
+    /// All numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the figure's title, the panel (title of the
+    /// plot, quantity), the curve, the text beside the point, and both coordinates, each after the label of its axis. A labelled
+    /// horizontal line has no x.
+    pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
+        self.panels().flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
+    }
+
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
     /// band that stand at frequencies of their own follow in tables of their own.
     pub fn tables(&self) -> Vec<Table> {
@@ -38,12 +48,35 @@ struct Series {
 type Constant<'m> = (&'m str, f64);
 
 impl Panel {
+    /// What it is called among the numbers, in a plot of this title.
+    fn name(&self, title: &str) -> String {
+        if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) }
+    }
+
+    /// Its rows of the long table, in a figure of this title and under this name.
+    fn long_rows<'p>(&'p self, figure_title: &'p str, name: String) -> impl Iterator<Item = [String; 8]> + 'p {
+        let mut rows = Vec::new();
+        for series in self.marks.iter().flat_map(series) {
+            for at in 0..series.x.len().min(series.y.len()) {
+                let label = series.labels.as_ref().and_then(|labels| labels.get(at)).map_or("", String::as_str);
+                rows.push([series.name.clone(), label.to_owned(), place(&self.x, series.x[at]), figure(series.y[at])]);
+            }
+        }
+        for (line, value) in self.marks.iter().filter_map(constant) {
+            rows.push([line.to_owned(), String::new(), String::new(), figure(value)]);
+        }
+        rows.into_iter().map(move |[curve, label, x, y]| {
+            let (x_quantity, y_quantity) = (self.x.label.clone(), self.y.label.clone());
+            [figure_title.to_owned(), name.clone(), curve, label, x_quantity, x, y_quantity, y]
+        })
+    }
+
     fn tables(&self, title: &str) -> (Table, Option<Table>) {
         let (bands, others): (Vec<&Mark>, Vec<&Mark>) =
             self.marks.iter().partition(|mark| matches!(mark, Mark::Envelope(of) if of.edge.is_none()));
         let mut main: Vec<Series> = others.into_iter().flat_map(series).collect();
         let bands: Vec<Series> = bands.into_iter().flat_map(series).collect();
-        let title = if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) };
+        let title = self.name(title);
         let apart = main.first().is_some_and(|first| bands.iter().any(|band| band.x != first.x));
         let of_bands = apart.then(|| self.table(format!("{title}, bands"), &bands, &[]));
         if !apart {
@@ -161,7 +194,7 @@ mod tests {
     use super::super::drawing::{Color, Stroke};
     use super::super::figure::Plot;
     use super::*;
-    use crate::figure::{Bars, Curve, DotShape, Dots};
+    use crate::figure::{Bars, Curve, DotShape, Dots, Rule};
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
 
@@ -189,6 +222,28 @@ mod tests {
         let table = table_of(panel);
         assert_eq!(table.columns, ["series", "label", "Airspeed [kt]", "Net gain [-]"]);
         assert_eq!(table.rows, [["optimum", "10", "60.0", "1.1"], ["schedule", "", "45.0", "1.0"]]);
+    }
+
+    #[test]
+    fn the_long_table_has_a_row_for_each_point_of_each_curve_of_each_panel() {
+        let omega: Arc<[f64]> = vec![0.5, 12.0].into();
+        let magnitude = Panel::new(Axis::logarithmic("Frequency [rad/s]"), Axis::linear("Magnitude [dB]"))
+            .with(Curve::new("nominal", LINE, Arc::clone(&omega), [1.0, -0.0]))
+            .with(Rule::horizontal(3.0, LINE).label("limit"));
+        let errors = Panel::new(Axis::named("Condition", ["3"]), Axis::linear("ΔJ [-]"))
+            .with(Dots::new("optimum", DotShape::Circle, Color::INK).dot(0.0, f64::NAN, "10"));
+        let plots = [Plot::new("LON → Q").panel(magnitude), Plot::new("").panel(errors)];
+        let rows: Vec<[String; 8]> = Figure::new("Both").plots(plots).long_rows().collect();
+        let magnitude = "LON → Q, Magnitude [dB]";
+        assert_eq!(
+            rows,
+            [
+                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "0.5", "Magnitude [dB]", "1.0"],
+                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "12.0", "Magnitude [dB]", "-0.0"],
+                ["Both", magnitude, "limit", "", "Frequency [rad/s]", "", "Magnitude [dB]", "3.0"],
+                ["Both", "ΔJ [-]", "optimum", "10", "Condition", "3", "ΔJ [-]", ""],
+            ]
+        );
     }
 
     #[test]

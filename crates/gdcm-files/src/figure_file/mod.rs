@@ -5,12 +5,14 @@ mod png;
 mod svg;
 
 use std::io::{self, Write};
+use std::iter::once;
 use std::path::Path;
 
 use gdcm_core::message_text::sanitized;
 use gdcm_core::study::Table;
+use gdcm_core::units::without_sign_of_zero;
 
-use crate::figure::{ColumnWidth, Figure, FigureFormat};
+use crate::figure::{ColumnWidth, Figure, FigureFormat, LONG_COLUMNS};
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
@@ -32,7 +34,7 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
 /// [`FileError::FigureWithoutNumbers`] where the numbers of a figure are asked for that shows none; else what hinders the writing.
 pub fn write_figure(figure: &Figure, width: ColumnWidth, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     let format = figure_format(path)?;
-    if format == FigureFormat::Csv && figure.tables().is_empty() {
+    if format == FigureFormat::Csv && figure.long_rows().next().is_none() {
         return Err(FileError::FigureWithoutNumbers { path: path.to_owned(), title: figure.title.clone() });
     }
     outputs.add(path, |file| write_as(figure, width, format, file))?;
@@ -45,7 +47,7 @@ pub fn write_as(figure: &Figure, width: ColumnWidth, format: FigureFormat, file:
         FigureFormat::Svg => file.write_all(svg::svg(&figure.drawing(width)).as_bytes()),
         FigureFormat::Png => png::write_png(&figure.drawing(width), file),
         FigureFormat::Pdf => file.write_all(&pdf::pdf(&figure.drawing(width))?),
-        FigureFormat::Csv => write_tables(file, &figure.tables()),
+        FigureFormat::Csv => write_records(file, once(LONG_COLUMNS.map(str::to_owned)).chain(figure.long_rows())),
     }
 }
 
@@ -71,11 +73,11 @@ where
 
 /// A cell that no spreadsheet takes for a formula, and no terminal for a command: one that begins with `=`, `+`, `-` or `@` and is no
 /// number stands behind an apostrophe, control characters and invisible ones are spelt out. Numbers have the minus that programs read, and a
-/// dash alone is the mark of what has none.
+/// dash alone is the mark of what has none. A zero has no sign.
 fn plain(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {
-        return number;
+        return without_sign_of_zero(&number).to_owned();
     }
     let is_formula = cell.len() > 1 && cell.starts_with(['=', '+', '-', '@']);
     format!("{}{}", if is_formula { "'" } else { "" }, sanitized(cell))

@@ -100,10 +100,13 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// The words with a capital letter first.
+/// The words with a capital letter first; a symbol stays the symbol that it is ("α of the gains").
 pub(super) fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    let mut capital = words.to_owned();
+    if let Some(first) = capital.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    capital
 }
 
 fn add_figures(page: &mut Page, analysis: &Analysis, choice: AssessmentChoice, pairs: &[Pair], of: &str) {

@@ -63,7 +63,9 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     ]);
     let price = schedule.lead_price().map(|price| format!("Leads: {}.", price.words(&inputs, &outputs)));
     let cautions = schedule.cautions.iter().map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
-    page.list(price.into_iter().chain(cautions));
+    let left_out = analysis.unscheduled_delays().into_iter();
+    let left_out = left_out.map(|of| format!("Left out: {}.", of.words(&analysis.study.dataset)));
+    page.list(price.into_iter().chain(cautions).chain(left_out));
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);
     let measures =

@@ -6,7 +6,7 @@ use gdcm_core::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTabl
 use gdcm_core::fidelity::SUGGESTION_RATIO;
 use gdcm_core::schedule::{Schedule, ScheduleKind, ScheduleSettings};
 use gdcm_core::study::{Analysis, AssessmentTable, Caution, ConditionAnalysis, SETTINGS, Study, Table, setting};
-use gdcm_core::units::number;
+use gdcm_core::units::{number, six_digits};
 
 use super::assessment::capital;
 use super::conditions::proof_word;
@@ -119,7 +119,10 @@ pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let of = quantity_symbol(settings.quantity);
     let delays = if settings.delays { "delays are scheduled too" } else { "delays are not scheduled" };
     let second = settings.second.map_or_else(String::new, |variable| format!(" and {variable}"));
-    format!("{kind}{second}, of {of}; airspeeds within {} kt are one; {delays}", number(settings.airspeed_tolerance_kt))
+    format!(
+        "{kind}{second}, of {of}; airspeeds within {} kt are one; {delays}",
+        six_digits(settings.airspeed_tolerance_kt)
+    )
 }
 
 /// Adds the section on the files of the study.

@@ -120,7 +120,7 @@ fn optimum_rests_on(context: &Context<'_>, problem: &Problem, solution: &Solutio
     let mut rests_on = context.models();
     rests_on.extend([
         context.held(),
-        format!("{defined} responses fitted, α = {}", number(problem.alpha)),
+        format!("{defined} responses fitted, α = {}", six_digits(problem.alpha)),
         solution.proof.outcome.words(),
     ]);
     rests_on
@@ -145,7 +145,7 @@ fn objective(
 ) -> Derivation {
     let value = scale * solution.objective;
     let fit = scale * Problem { alpha: 0.0, ..problem.clone() }.objective_at(&solution.inputs, &solution.outputs);
-    let parts = format!("{} (fit) + {} (α = {})", digits(fit), digits(value - fit), number(problem.alpha));
+    let parts = format!("{} (fit) + {} (α = {})", digits(fit), digits(value - fit), six_digits(problem.alpha));
     let mut rests_on = optimum_rests_on(context, problem, solution);
     rests_on.push(format!("no less than {}{unit} is possible", digits(scale * solution.proof.lower_bound)));
     Derivation {

@@ -5,6 +5,7 @@ mod costs;
 mod deltas;
 
 use super::*;
+use crate::units::six_digits;
 
 /// A figure of an analysis that is asked about.
 #[derive(Clone, Debug, PartialEq)]
@@ -208,7 +209,7 @@ fn counted_words(mismatch: &Mismatch) -> Option<String> {
 
 /// The band and its frequencies.
 fn band_words(settings: &Settings) -> String {
-    let (min, max) = (number(settings.band.min()), number(settings.band.max()));
+    let (min, max) = (six_digits(settings.band.min()), six_digits(settings.band.max()));
     format!("{} frequencies from {min} to {max} rad/s, logarithmically spaced", settings.points)
 }
 

@@ -186,7 +186,7 @@ fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tole
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let value = corrections(analysis, "", &analysis.conditions.keys().copied().collect());
     let mut settings = keys(&value["settings"]);
-    let later = ["agreement_db", "delay_from", "error_bars", "gain_from", "phase"];
+    let later = ["agreement_db", "delay_from", "error_bars", "gain_from", "phase", "schedule_delays"];
     settings.retain(|key| !later.contains(key));
     assert_eq!(
         settings,

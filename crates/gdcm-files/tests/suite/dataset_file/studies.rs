@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use gdcm_core::correction::Channel;
 use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_core::schedule::DelayScheduling;
 use gdcm_core::study::{Edit, Kind, SETTINGS, Setting, SignRole, Study, Value, setting};
 use gdcm_files::{
     FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
@@ -101,6 +102,53 @@ fn every_setting_is_a_key_of_the_file() {
     for setting in SETTINGS {
         let pointer = format!("/settings/{}", setting.key.replace('.', "/"));
         assert!(text.pointer(&pointer).is_some(), "{}", setting.key);
+    }
+}
+
+/// How delays are scheduled in the study that a changed text is.
+fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
+    let desk = Desk::new();
+    desk.saved(change);
+    open_study(&desk.study()).unwrap().study.settings.schedule_delays
+}
+
+#[test]
+fn flags_of_older_studies_say_whether_delays_are_scheduled() {
+    let older = |flag: bool| {
+        delay_scheduling(|file| {
+            file["settings"].as_object_mut().unwrap().remove("schedule_delays");
+            file["settings"]["schedule"]["delays"] = json!(flag);
+        })
+    };
+    assert_eq!([older(true), older(false)], [DelayScheduling::Always, DelayScheduling::Never]);
+    let said = |value: Json| delay_scheduling(|file| file["settings"]["schedule_delays"] = value);
+    let values = [json!("automatic"), json!("always"), json!("never"), json!(true), json!(false)];
+    assert_eq!(
+        values.map(said),
+        [
+            DelayScheduling::Automatic,
+            DelayScheduling::Always,
+            DelayScheduling::Never,
+            DelayScheduling::Always,
+            DelayScheduling::Never
+        ]
+    );
+    let refusal = Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
+    assert!(refusal.contains("\"automatic\"") && refusal.contains("sometimes"), "{refusal}");
+}
+
+#[test]
+fn older_programs_find_a_flag_where_they_look_for_it() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    for (scheduling, flag) in [("automatic", false), ("always", true), ("never", false)] {
+        let mut study = Study::new(loaded.dataset.clone());
+        let value = setting::SCHEDULE_DELAYS.read(&[scheduling]).unwrap();
+        study.apply(&setting::SCHEDULE_DELAYS.to(value)).unwrap();
+        save_study(&study, &loaded, &desk.study()).unwrap();
+        let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+        let settings = &text["settings"];
+        assert_eq!((&settings["schedule_delays"], &settings["schedule"]["delays"]), (&json!(scheduling), &json!(flag)));
     }
 }
 

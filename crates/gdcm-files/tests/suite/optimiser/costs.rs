@@ -1,6 +1,8 @@
 //! Sensitivities and toggles against solving the changed problem.
 
-use gdcm_core::correction::{ActiveConstraint, Bounds, Problem, ProofBudget, sensitivities, toggles};
+use gdcm_core::correction::{
+    ActiveConstraint, Bounds, Channel, Problem, ProofBudget, Quantity, Sensitivity, sensitivities, toggles,
+};
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -102,6 +104,23 @@ fn sensitivities_are_put_into_words() {
             "{words}"
         );
     }
+}
+
+#[test]
+fn no_restraint_is_said_to_cost_more_than_the_whole_objective() {
+    let words = |share_per_unit: f64| {
+        let restraint = ActiveConstraint::LowerBound(Channel::Input(0));
+        let per_unit = 1e-6 * share_per_unit;
+        let sensitivity = Sensitivity { quantity: Quantity::Delay, restraint, per_unit, share_per_unit };
+        (sensitivity.step(), sensitivity.words(&["LON".to_owned()], &[]))
+    };
+    let (step, of_much) = words(1.2156);
+    assert_eq!(step, 0.1);
+    assert_eq!(of_much, "τ_LON is 0: 0.1 ms of lead would lower the objective by about 12.16 %.");
+    assert_eq!(words(0.3).1, "τ_LON is 0: 1 ms of lead would lower the objective by about 30.00 %.");
+    let (least, of_all) = words(1e12);
+    assert_eq!(least, 1e-6);
+    assert!(of_all.ends_with("by about 100.00 %."), "{of_all}");
 }
 
 #[test]

@@ -237,6 +237,18 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
 }
 
 #[test]
+fn a_lead_that_rounding_makes_is_none() {
+    let mut delta_s = PairTable::filled(6, 4, Some(0.0));
+    delta_s[Pair::new(0, 1)] = Some(-2.6e-17);
+    delta_s[Pair::new(1, 0)] = Some(1.3e-17);
+    let solution = solved(&Problem::delays(delta_s.clone(), on_axis(), 0.1));
+    assert!(solution.matched && solution.unmatched.is_empty() && solution.conflicts.is_empty(), "{solution:?}");
+    // A microsecond is one.
+    delta_s[Pair::new(0, 1)] = Some(-1e-6);
+    assert_eq!(solved(&Problem::delays(delta_s, on_axis(), 0.1)).unmatched.len(), 1);
+}
+
+#[test]
 fn delays_that_differ_by_more_than_the_bound_are_explained() {
     let mut delta_s = PairTable::filled(6, 4, Some(0.01));
     delta_s[Pair::new(2, 2)] = Some(0.001);

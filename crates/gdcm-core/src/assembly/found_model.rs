@@ -385,7 +385,7 @@ fn without_extension(file: &str) -> String {
 }
 
 /// Where no name says a number, each folder is a condition, in the order of their names; where one file holds models of several
-/// airspeeds, each airspeed is one, in the order of the models.
+/// airspeeds, each airspeed is one, from the least on.
 fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     if rows.iter().any(|row| row.condition.is_some()) {
         return;
@@ -404,20 +404,20 @@ fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     }
 }
 
-/// Each airspeed, with its altitude and mass, is a condition; models without an airspeed stay without one.
+/// Each airspeed, with its altitude and mass, is a condition, from the least on; models without an airspeed stay without one.
 fn number_airspeeds(rows: &mut [Row]) {
-    let mut states: Vec<[Option<f64>; 3]> = Vec::new();
+    let mut states: Vec<[f64; 3]> = rows.iter().filter_map(state_of).collect();
+    states.sort_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
+    states.dedup();
     for row in rows {
-        if row.airspeed_kt.is_none() {
-            continue;
-        }
-        let state = [row.airspeed_kt, row.altitude_ft, row.mass_kg];
-        let place = states.iter().position(|known| *known == state).unwrap_or(states.len());
-        if place == states.len() {
-            states.push(state);
-        }
-        row.condition = Some(place as i64 + 1);
+        let place = state_of(row).and_then(|state| states.iter().position(|known| *known == state));
+        row.condition = place.map(|place| place as i64 + 1);
     }
+}
+
+/// Airspeed, altitude and mass; below all others where the latter are not said.
+fn state_of(row: &Row) -> Option<[f64; 3]> {
+    Some([row.airspeed_kt?, row.altitude_ft.unwrap_or(f64::MIN), row.mass_kg.unwrap_or(f64::MIN)])
 }
 
 /// The only physics model of a condition at no perturbed trim is nominal.

@@ -200,26 +200,14 @@ impl Caution {
         (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
     }
 
-    /// The caution of the kept models of a bundle whose channels were taken by their position, where there are some.
-    pub(super) fn of_positions(condition: &Condition, choice: &BundleChoice, bundle: BundleKind) -> Option<Self> {
-        let kept = condition.bundle(bundle).iter().filter(|model| !choice.rejected.contains(&model.name));
-        let by_position =
-            kept.filter(|model| model.source.as_ref().is_some_and(|source| !source.by_position.is_empty()));
-        let models: Vec<String> = by_position.map(|model| model.name.clone()).collect();
-        if models.is_empty() {
-            return None;
-        }
-        Some(Caution::ChannelsByPosition { bundle, models })
-    }
-
-    /// Its stable name.
+    /// Its stable code.
     pub fn code(&self) -> &'static str {
         match self {
             Caution::HeldButUndefined { .. } => "held-but-undefined",
             Caution::NoSuggestions(_) => "no-suggestions",
             Caution::SetAside { .. } => "set-aside",
-            Caution::NotFinite { .. } => "not-finite",
-            Caution::NumericallyNothing { .. } => "numerically-nothing",
+            Caution::NotFinite { .. } => "response-not-finite",
+            Caution::NumericallyNothing { .. } => "response-numerically-nothing",
             Caution::NotCoherent { .. } => "not-coherent",
             Caution::CoherenceNotUsed => "coherence-not-used",
             Caution::ChannelsByPosition { .. } => "channels-by-position",
@@ -230,6 +218,18 @@ impl Caution {
     /// Whether it says that a model is set aside.
     pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
+    }
+
+    /// The caution of the kept models of a bundle whose channels were taken by their position, where there are some.
+    pub(super) fn of_positions(condition: &Condition, choice: &BundleChoice, bundle: BundleKind) -> Option<Self> {
+        let kept = condition.bundle(bundle).iter().filter(|model| !choice.rejected.contains(&model.name));
+        let by_position =
+            kept.filter(|model| model.source.as_ref().is_some_and(|source| !source.by_position.is_empty()));
+        let models: Vec<String> = by_position.map(|model| model.name.clone()).collect();
+        if models.is_empty() {
+            return None;
+        }
+        Some(Caution::ChannelsByPosition { bundle, models })
     }
 
     /// The response that the engineer may want to ignore in the objective.

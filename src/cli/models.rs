@@ -92,6 +92,9 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
     let assembly = Assembly::new(found.models, rules);
     say(&table(&assembly))?;
+    for caution in assembly.cautions() {
+        coded_caution(Some(caution.code()), &[], &assembly.caution_words(&caution));
+    }
     if is_proposed {
         add_rules(assembly.rules(), &rules_path, &mut outputs)?;
     }
@@ -146,6 +149,9 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
     let found = read_models(paths, headings, &ReadingProgress::new())?;
     found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
     found.ignored.iter().for_each(|words| note(&format!("no model: {words}")));
+    for words in found.unused_words() {
+        note(&words);
+    }
     Ok(found)
 }
 

@@ -271,6 +271,15 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     let second = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
     assert_eq!(second.status, 0, "{}", second.error);
     assert!(second.out.contains("11 conditions"), "{}", second.out);
+    assert!(second.error.contains("caution: no names of channels in the file"), "{}", second.error);
+    let analysed = folder.path().join("analysed");
+    let analysis = run(&["--json", "analyze", made, "--out", analysed.to_str().unwrap()]);
+    assert_eq!(analysis.status, 0, "{}", analysis.error);
+    let said: serde_json::Value = serde_json::from_str(&analysis.out).unwrap();
+    let by_position =
+        |caution: &&serde_json::Value| caution["text"].as_str().unwrap().contains("taken by their position");
+    let cautions: Vec<&serde_json::Value> = said["cautions"].as_array().unwrap().iter().filter(by_position).collect();
+    assert!(!cautions.is_empty(), "{said}");
     let dataset = load_dataset(&out).unwrap().dataset;
     assert_same_numbers(&dataset, example, "csv");
     let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
@@ -350,6 +359,41 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
         panic!("the response is measured")
     };
     assert!(response.coherence().is_some());
+}
+
+/// A stack of physics models and one of identified models in a file each, without any names of conditions.
+#[test]
+fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let stack = |gains: [f64; 3], airspeeds: [f64; 3]| {
+        let pages: Vec<serde_json::Value> = gains.iter().map(|gain| json!([[gain]])).collect();
+        json!({
+            "A": [[[-1.0]], [[-1.0]], [[-1.0]]], "B": pages, "C": [[1.0]], "D": [[0.0]], "airspeed_kt": airspeeds,
+            "inputs": [{"name": "LON", "unit": "%"}], "outputs": [{"name": "Q", "unit": "deg/s"}],
+            "input_delay_ms": [30.0], "torque": 7.0
+        })
+    };
+    for (name, gains, airspeeds) in [
+        ("physics.json", [1.0, 2.0, 3.0], [60.0, 80.0, 100.0]),
+        ("identified.json", [30.0, 20.0, 10.0], [100.0, 80.0, 60.0]),
+    ] {
+        std::fs::write(folder.path().join(name), stack(gains, airspeeds).to_string()).unwrap();
+    }
+    let out = folder.path().join("made.json");
+    let ended = run(&["assemble", folder.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(ended.status, 0, "{}", ended.error);
+    assert_eq!(ended.error.matches("not used: torque").count(), 2, "{}", ended.error);
+    let made = load_dataset(&out).unwrap().dataset;
+    let mut found = Vec::new();
+    for condition in made.conditions() {
+        let gains = BundleKind::BOTH.map(|kind| matrices(&condition.bundle(kind)[0])[1][(0, 0)]);
+        found.push((condition.flight_state().airspeed_kt, gains));
+    }
+    assert_eq!(found, [(60.0, [1.0, 10.0]), (80.0, [2.0, 20.0]), (100.0, [3.0, 30.0])]);
+    let Dynamics::StateSpace(nominal) = &made.conditions()[0].bundle(BundleKind::Physics)[0].dynamics else {
+        panic!("it has matrices")
+    };
+    assert_eq!(nominal.timing().input_delays_s, Some(vec![0.03]));
 }
 
 #[test]

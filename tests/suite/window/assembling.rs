@@ -92,6 +92,21 @@ fn what_is_said_of_a_model_is_filled_down_undone_and_shown() {
 }
 
 #[test]
+fn channels_taken_by_position_and_what_is_not_used_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("nominal.json");
+    let text = r#"{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]], "airspeed_kt": 60, "torque": 7}"#;
+    std::fs::write(&path, text).unwrap();
+    let mut window = window();
+    give(&mut window, AssemblingCommand::Add(vec![path]));
+    wait_for_models(&mut window);
+    window.run_steps(2);
+    assert_eq!(bench(&window).assembly().cautions().len(), 1);
+    assert!(window.query_by_label_contains("caution: no names of channels in the file").is_some());
+    assert!(window.query_by_label_contains("nominal.json: not used: torque").is_some());
+}
+
+#[test]
 fn the_columns_of_a_table_are_corrected_before_they_are_taken() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("flight.txt");

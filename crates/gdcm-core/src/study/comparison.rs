@@ -182,8 +182,11 @@ impl Comparison {
             against(&compared(BundleKind::Physics, nominal))
         };
         let delta = Delta::of(&representative.mismatch, grid.omega());
-        let undefined =
-            delta.gain.map(|pair, gain| gain.is_none().then(|| why_undefined(&simulated, &reference, pair)));
+        let why = |pair: Pair| match flight {
+            Dynamics::Measured(response) if !response.is_measured(pair) => Undefined::NotMeasured,
+            _ => why_undefined(&simulated, &reference, pair),
+        };
+        let undefined = delta.gain.map(|pair, gain| gain.is_none().then(|| why(pair)));
         cautions.extend(coherence_caution(flight, &reference, grid.len(), coherence));
         for (kind, model, compared) in
             [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]

@@ -54,6 +54,16 @@ impl ChannelMatch {
             });
             found.uses.push(used);
         }
+        let is_used = |index: usize| found.uses.iter().flatten().any(|used| used.index == index);
+        let unused: Vec<&str> = labels
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| !is_used(*index))
+            .filter_map(|(_, label)| label.name.as_deref())
+            .collect();
+        if found.problems.is_empty() && !unused.is_empty() {
+            found.notes.push(format!("{side}s of the file that the dataset does not have: {}", unused.join(", ")));
+        }
         if partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
             found.problems.push(unmatched(side, labels, rules));
         }
@@ -224,7 +234,7 @@ pub fn folded_name(name: &str) -> String {
 }
 
 /// The name that stands for all that call the same channel.
-fn canonical(name: &str) -> String {
+pub(super) fn canonical(name: &str) -> String {
     let name = folded_name(name);
     let first = field_names().find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
     first.map_or_else(|| name.clone(), str::to_owned)
@@ -450,8 +460,9 @@ mod tests {
     #[test]
     fn a_response_whose_channels_match_nothing_is_a_problem_and_one_that_lacks_some_is_none() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
-        let part = matched(ChannelSide::Input, &[label("lat", "%")], &rules, true);
+        let part = matched(ChannelSide::Input, &[label("lat", "%"), label("latt", "%")], &rules, true);
         assert!(part.problems.is_empty(), "{:?}", part.problems);
+        assert_eq!(part.notes, ["inputs of the file that the dataset does not have: latt"]);
         for labels in [vec![label("delta", "%"), label("run2", "%")], vec![ChannelLabel::default()]] {
             let nothing = matched(ChannelSide::Input, &labels, &rules, true);
             assert!(matches!(&nothing.problems[..], [ProblemKind::ResponseUnmatched { .. }]), "{labels:?}");

@@ -1,6 +1,8 @@
 //! Output and input of a response out of the name of its file or variable: `frf_q_delta_lon`, `roll_rate per lat_cyclic run 2`.
 
-use super::channel_match::{FIELD_INPUTS, field_names};
+use std::collections::BTreeSet;
+
+use super::channel_match::{FIELD_INPUTS, canonical, field_names};
 use super::{ChannelRule, Dimension, PhysicalUnit, SignedName, folded_name, same_channel};
 
 /// Most words of a text that are put together to the name of one channel.
@@ -127,16 +129,32 @@ pub enum KnownChannels<'r> {
     Field,
 }
 
-impl KnownChannels<'_> {
+/// The names of the known channels that stand for all that call the same.
+enum KnownNames {
+    Dataset { inputs: BTreeSet<String>, outputs: BTreeSet<String> },
+    Field,
+}
+
+impl KnownNames {
+    fn of(known: KnownChannels<'_>) -> Self {
+        let names = |rules: &[ChannelRule]| {
+            let each = rules.iter().flat_map(|rule| std::iter::once(&rule.name).chain(&rule.aliases));
+            each.map(|name| canonical(&SignedName::of(name).name)).collect()
+        };
+        match known {
+            KnownChannels::Dataset { inputs, outputs } => {
+                Self::Dataset { inputs: names(inputs), outputs: names(outputs) }
+            }
+            KnownChannels::Field => Self::Field,
+        }
+    }
+
     /// Whether a name is that of an output, and of an input.
-    fn sides(self, name: &str) -> Sides {
+    fn sides(&self, name: &str) -> Sides {
         match self {
             Self::Dataset { inputs, outputs } => {
-                let calls = |rule: &ChannelRule| {
-                    let mut names = std::iter::once(&rule.name).chain(&rule.aliases);
-                    names.any(|known| same_channel(name, &SignedName::of(known).name))
-                };
-                Sides { output: outputs.iter().any(calls), input: inputs.iter().any(calls) }
+                let name = canonical(name);
+                Sides { output: outputs.contains(&name), input: inputs.contains(&name) }
             }
             Self::Field => {
                 let folded = folded_name(name);
@@ -176,7 +194,7 @@ impl ResponseName {
     /// Where the text names several outputs or inputs, or where a word beside a channel may make another one of it.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = words_of(text);
-        let named = named_channels(text, &words, known);
+        let named = named_channels(text, &words, &KnownNames::of(known));
         let Some(last) = named.last() else { return Ok(Self::default()) };
         let begins = named[0].words.start;
         let ends = last.words.end;
@@ -247,7 +265,7 @@ fn words_of(text: &str) -> Vec<Word<'_>> {
     words
 }
 
-fn named_channels<'t>(text: &'t str, words: &[Word<'t>], known: KnownChannels<'_>) -> Vec<NamedChannel<'t>> {
+fn named_channels<'t>(text: &'t str, words: &[Word<'t>], known: &KnownNames) -> Vec<NamedChannel<'t>> {
     let mut named = Vec::new();
     let mut first = 0;
     while first < words.len() {

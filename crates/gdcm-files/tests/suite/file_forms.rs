@@ -397,6 +397,11 @@ fn frf_wide(root: &Path) {
     });
 }
 
+/// "frf_q_delta_lon_run2.csv"
+fn name_of_response(output: &str, input: &str) -> String {
+    format!("frf_{output}_{input}_run2.csv")
+}
+
 /// A file for each response, named by `name`.
 fn frf_per_response(root: &Path, name: impl Fn(&str, &str) -> String) {
     physics_beside(root, |folder, model| {
@@ -504,7 +509,7 @@ enum Outcome {
 
 struct Form {
     name: &'static str,
-    write: &'static dyn Fn(&Path),
+    write: fn(&Path),
     rules: fn(&[FoundModel]) -> Rules,
     outcome: Outcome,
 }
@@ -552,43 +557,42 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
 #[test]
 fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about() {
     const KNOWN: Outcome = Outcome::Known { has_delays: true };
-    let per_response = |output: &str, input: &str| -> String { format!("frf_{output}_{input}_run2.csv") };
     let forms = [
-        Form { name: ".mat per model", write: &mat_per_model, rules, outcome: KNOWN },
-        Form { name: "struct array", write: &mat_struct_array, rules, outcome: KNOWN },
-        Form { name: "one struct", write: &mat_one_struct, rules, outcome: KNOWN },
-        Form { name: "stacked arrays", write: &mat_stack, rules, outcome: KNOWN },
-        Form { name: "npz stack", write: &npz_stack, rules, outcome: KNOWN },
-        Form { name: "Octave -binary", write: &|root| octave("binary", root), rules, outcome: KNOWN },
-        Form { name: "Octave -text", write: &|root| octave("text", root), rules, outcome: KNOWN },
-        Form { name: "Octave -hdf5", write: &|root| octave("hdf5", root), rules, outcome: KNOWN },
-        Form { name: "Octave -v7", write: &|root| octave("v7", root), rules, outcome: KNOWN },
+        Form { name: ".mat per model", write: mat_per_model, rules, outcome: KNOWN },
+        Form { name: "struct array", write: mat_struct_array, rules, outcome: KNOWN },
+        Form { name: "one struct", write: mat_one_struct, rules, outcome: KNOWN },
+        Form { name: "stacked arrays", write: mat_stack, rules, outcome: KNOWN },
+        Form { name: "npz stack", write: npz_stack, rules, outcome: KNOWN },
+        Form { name: "Octave -binary", write: |root| octave("binary", root), rules, outcome: KNOWN },
+        Form { name: "Octave -text", write: |root| octave("text", root), rules, outcome: KNOWN },
+        Form { name: "Octave -hdf5", write: |root| octave("hdf5", root), rules, outcome: KNOWN },
+        Form { name: "Octave -v7", write: |root| octave("v7", root), rules, outcome: KNOWN },
         Form {
             name: "text matrices",
-            write: &text_matrices,
+            write: text_matrices,
             rules: rules_of_matrices,
             outcome: Outcome::Known { has_delays: false },
         },
-        Form { name: "JSON, names", write: &|root| json_models(root, false), rules, outcome: KNOWN },
-        Form { name: "JSON, objects", write: &|root| json_models(root, true), rules, outcome: KNOWN },
-        Form { name: "FRF table, wide", write: &frf_wide, rules: rules_of_role, outcome: KNOWN },
+        Form { name: "JSON, names", write: |root| json_models(root, false), rules, outcome: KNOWN },
+        Form { name: "JSON, objects", write: |root| json_models(root, true), rules, outcome: KNOWN },
+        Form { name: "FRF table, wide", write: frf_wide, rules: rules_of_role, outcome: KNOWN },
         Form {
             name: "FRF table per response",
-            write: &|root| frf_per_response(root, per_response),
+            write: |root| frf_per_response(root, name_of_response),
             rules: rules_of_role,
             outcome: KNOWN,
         },
-        Form { name: "FRD npz", write: &|root| frd_npz(root, |model| model.names.clone()), rules, outcome: KNOWN },
+        Form { name: "FRD npz", write: |root| frd_npz(root, |model| model.names.clone()), rules, outcome: KNOWN },
         // What is not said is asked about.
         Form {
             name: "text matrices without units",
-            write: &text_matrices,
+            write: text_matrices,
             rules,
             outcome: Outcome::Asked("unit-of-file"),
         },
         Form {
             name: "FRD npz whose labels match nothing",
-            write: &|root| {
+            write: |root| {
                 frd_npz(root, |_| ["u", "y"].map(|letter| (1..=CHANNELS).map(|of| format!("{letter}{of}")).collect()))
             },
             rules,
@@ -596,13 +600,13 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
         },
         Form {
             name: "FRF tables of unknown names",
-            write: &|root| frf_per_response(root, |output, input| format!("{}{}.csv", output.len(), input.len())),
+            write: |root| frf_per_response(root, |output, input| format!("{}{}.csv", output.len(), input.len())),
             rules: rules_of_role,
             outcome: Outcome::Asked("response-unmatched"),
         },
         Form {
             name: "FRF tables of derivatives",
-            write: &|root| frf_per_response(root, |output, input| format!("frf_{output}_dot_{input}.csv")),
+            write: |root| frf_per_response(root, |output, input| format!("frf_{output}_dot_{input}.csv")),
             rules: rules_of_role,
             outcome: Outcome::Asked("response-name"),
         },

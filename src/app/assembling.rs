@@ -142,6 +142,7 @@ impl GdcmApp {
         };
         let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
         let (models, files) = (found.models.len(), found.files);
+        bench.unused.extend(found.unused_words());
         bench.add(&name.unwrap_or_default(), found.models);
         bench.faults.extend(found.faults);
         bench.ignored.extend(found.ignored);

@@ -16,7 +16,7 @@ use gdcm_files::{
 
 use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;
-use super::terminal::{Failure, caution, error, indented, note, progress_target, say};
+use super::terminal::{Failure, caution, coded_caution, error, indented, note, progress_target, say};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -86,6 +86,9 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     declare(arguments, &found.models, &mut rules)?;
     let assembly = Assembly::new(found.models, rules);
     say(&table(&assembly))?;
+    for caution in assembly.cautions() {
+        coded_caution(Some(caution.code()), &[], &assembly.caution_words(&caution));
+    }
     if is_proposed {
         add_rules(assembly.rules(), &rules_path, &mut outputs)?;
     }
@@ -201,6 +204,9 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
     let found = read_models(paths, headings, &ReadingProgress::new())?;
     found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
     found.ignored.iter().for_each(|words| note(&format!("no model: {words}")));
+    for words in found.unused_words() {
+        note(&words);
+    }
     Ok(found)
 }
 

@@ -41,6 +41,9 @@ struct Said {
 /// A caution, and the conditions that it is of; none where it is of the whole.
 #[derive(Debug, Serialize)]
 struct SaidCaution {
+    /// Stable name of what it is about, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    code: Option<&'static str>,
     text: String,
     conditions: Vec<i64>,
 }
@@ -110,16 +113,25 @@ pub(super) fn caution(words: &str) {
 
 /// The same caution of some conditions, said once with the conditions named.
 pub(super) fn caution_of(conditions: &[ConditionId], words: &str) {
+    coded_caution(None, conditions, words);
+}
+
+/// A caution with the stable name of what it is about.
+pub(super) fn coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
     if said().manner.json {
-        return keep_caution(conditions, words);
+        return keep_coded_caution(code, conditions, words);
     }
     complain("caution", &of_conditions(conditions, words));
 }
 
 /// Keeps a caution for the JSON object, where it stands apart; the text says it at its own place.
 pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
+    keep_coded_caution(None, conditions, words);
+}
+
+fn keep_coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
     let conditions = conditions.iter().map(|id| id.0).collect();
-    said().cautions.push(SaidCaution { text: plain(words, ""), conditions });
+    said().cautions.push(SaidCaution { code, text: plain(words, ""), conditions });
 }
 
 /// Says what is wrong.

@@ -271,6 +271,15 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     let second = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
     assert_eq!(second.status, 0, "{}", second.error);
     assert!(second.out.contains("11 conditions"), "{}", second.out);
+    assert!(second.error.contains("caution: no names of channels in the file"), "{}", second.error);
+    let analysed = folder.path().join("analysed");
+    let analysis = run(&["--json", "analyze", made, "--out", analysed.to_str().unwrap()]);
+    assert_eq!(analysis.status, 0, "{}", analysis.error);
+    let said: serde_json::Value = serde_json::from_str(&analysis.out).unwrap();
+    let by_position =
+        |caution: &&serde_json::Value| caution["text"].as_str().unwrap().contains("taken by their position");
+    let cautions: Vec<&serde_json::Value> = said["cautions"].as_array().unwrap().iter().filter(by_position).collect();
+    assert!(!cautions.is_empty(), "{said}");
     let dataset = load_dataset(&out).unwrap().dataset;
     assert_same_numbers(&dataset, example, "csv");
     let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];

@@ -31,12 +31,29 @@ pub struct FoundModels {
     pub faults: Vec<String>,
     /// What is no model, in words.
     pub ignored: Vec<String>,
+    /// The variables that were not used, by the file that holds models beside them.
+    pub unused: BTreeMap<String, Vec<String>>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
     /// The units that have to be said before these tables are frequency responses.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
     /// Number of files that were read.
     pub files: usize,
+}
+
+impl FoundModels {
+    /// One line for each file of which variables were not used.
+    pub fn unused_words(&self) -> Vec<String> {
+        /// Names of a file that are written out.
+        const NAMED: usize = 20;
+        let words = |(file, names): (&String, &Vec<String>)| {
+            let rest = names.len().saturating_sub(NAMED);
+            let more = (rest > 0).then(|| format!("and {rest} more"));
+            let names: Vec<String> = names.iter().take(NAMED).cloned().chain(more).collect();
+            format!("{file}: not used: {}", names.join(", "))
+        };
+        self.unused.iter().map(words).collect()
+    }
 }
 
 /// The models of files and folders, folders with all that is in them; tables of columns by the headings that are said of them. A
@@ -92,12 +109,14 @@ impl ModelReading<'_> {
                     found
                 }
             },
-            Contents::Dataset(dataset) => Found { items: models_of_dataset(&dataset, name), ..Found::default() },
+            Contents::Dataset(dataset, unknown) => {
+                Found { items: models_of_dataset(&dataset, name), unused: unknown, ..Found::default() }
+            }
             Contents::Logs(_) => Found {
                 ignored: vec![format!("{name}: a log of an aircraft: records, not a model")],
                 ..Found::default()
             },
-            Contents::Models(models) => Found { items: models, ..Found::default() },
+            Contents::Models(models, unknown) => Found { items: models, unused: unknown, ..Found::default() },
             Contents::Archive { variables, files, ignored } => {
                 for (inner, contents) in files {
                     let (inner_name, inner_path) = (format!("{name}/{inner}"), Path::new(&inner));
@@ -115,14 +134,20 @@ impl ModelReading<'_> {
                 self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget).map_err(wrong)?
             }
         };
-        let Found { mut items, faults, ignored } = recognised;
-        for model in &mut items {
+        let Found { mut items, faults, ignored, unused } = recognised;
+        for (index, model) in items.iter_mut().enumerate() {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
+            if index == 0 {
+                source.unused.clone_from(&unused);
+            }
             source.file = Some(name.to_owned());
             source.sha256 = Some(sha256.clone());
             source.note = Some(model.notes.join("; ")).filter(|note| !note.is_empty());
         }
         self.found.models.append(&mut items);
+        if !unused.is_empty() {
+            self.found.unused.entry(name.to_owned()).or_default().extend(unused);
+        }
         self.found.faults.extend(of_file(name, faults));
         self.found.ignored.extend(of_file(name, ignored));
         Ok(())
@@ -210,6 +235,8 @@ fn facts(condition: &Condition, name: &str) -> Facts {
         airspeed_kt: Some(state.airspeed_kt),
         altitude_ft: state.altitude_ft,
         mass_kg: state.mass_kg,
+        name: None,
+        is_of_dataset: true,
         records: condition.records().iter().map(beside).collect(),
     }
 }
@@ -319,11 +346,11 @@ fn models_of_table(table: &TextTable, file: &str) -> Result<(Found<FoundModel>, 
     let models = columns.responses.iter().zip(values).map(|(response, points)| {
         let mut notes: Vec<String> = columns.notes.iter().chain(&table.notes).cloned().collect();
         if response.coherence.is_some() {
-            notes.push("coherence taken as gamma squared".to_owned());
+            notes.push("coherence taken as γ²".to_owned());
         }
         model(response, points, several, notes)
     });
-    Ok((Found { items: models.collect(), ..Found::default() }, Vec::new()))
+    Ok((Found { items: models.collect(), unused: columns.unused.clone(), ..Found::default() }, Vec::new()))
 }
 
 fn model(response: &RecognisedResponse, points: ResponsePoints, several: bool, notes: Vec<String>) -> FoundModel {

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::corrections_file::without_empty;
-use crate::dataset_file::ModelText;
+use crate::dataset_file::{LabelText, ModelText};
 use crate::file_error::FileError;
 use crate::json_text::{Format, Limited, Nested, list, write_compact};
 use crate::output_set::OutputSet;
@@ -49,9 +49,6 @@ pub(super) fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::R
 
 /// The text of a model outside a dataset.
 pub(super) fn model_text(model: &FoundModel) -> ModelText {
-    let part = |labels: &[ChannelLabel], of: fn(&ChannelLabel) -> &Option<String>| {
-        Some(Limited(labels.iter().map(|label| of(label).clone().unwrap_or_default()).collect()))
-    };
     let text = ModelText::of(model.draft.clone());
     let role = match &model.draft.origin {
         // What a model is that says nothing of itself.
@@ -62,24 +59,52 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
     ModelText {
         name: if text.name.is_empty() { model.file().to_owned() } else { text.name },
         role,
-        inputs: part(&model.inputs, |label| &label.name),
-        outputs: part(&model.outputs, |label| &label.name),
-        input_units: part(&model.inputs, |label| &label.unit),
-        output_units: part(&model.outputs, |label| &label.unit),
+        condition: model.facts.condition,
+        airspeed_kt: model.facts.airspeed_kt,
+        altitude_ft: model.facts.altitude_ft,
+        mass_kg: model.facts.mass_kg,
+        inputs: names_text(&model.inputs),
+        outputs: names_text(&model.outputs),
+        input_units: units_text(&model.inputs),
+        output_units: units_text(&model.outputs),
         source: text.source.or_else(|| Some(Default::default())),
         notes: Limited::some(model.notes.clone()),
         ..text
     }
 }
 
-/// The models of a text of this program; nothing where it is no such text.
-pub(super) fn found_models(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Option<Vec<FoundModel>> {
-    let read = |format: Format| {
-        let (text, _) = format.decode::<ModelsText>(text, path, budget).ok()?;
-        Some(text.models)
+fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNELS>> {
+    let names = labels.iter().map(|label| LabelText::Name(label.name.clone().unwrap_or_default()));
+    Some(Limited(names.collect()))
+}
+
+fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>> {
+    Some(Limited(labels.iter().map(|label| label.unit.clone().unwrap_or_default()).collect()))
+}
+
+/// The models of a text of this program, and what of it is not known; nothing where it is no such text, or where something unknown looks
+/// like a delay: it is then read as any other text, which knows the ways of writing delays and asks about the rest.
+pub(super) fn found_models(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Option<(Vec<FoundModel>, Vec<String>)> {
+    let read = |format: Format| format.decode::<ModelsText>(text, path, budget).ok();
+    let (models, unknown) = match read(MODELS) {
+        Some((text, unknown)) => (text.models, unknown),
+        None => (read(IDENTIFIED)?.0.models, Vec::new()),
     };
-    let models = read(MODELS).or_else(|| read(IDENTIFIED))?;
-    models.into_iter().enumerate().map(|(index, model)| found(model, index)).collect()
+    if unknown.iter().any(|words| names_delay(words)) {
+        return None;
+    }
+    let models = models.into_iter().enumerate().map(|(index, model)| found(model, index));
+    Some((models.collect::<Option<_>>()?, unknown))
+}
+
+/// Whether words about a key that is not known name one that looks like a delay.
+fn names_delay(words: &str) -> bool {
+    let words = words.to_lowercase();
+    ["delay", "\"tau", "\"td", "dead", "latency"].iter().any(|word| words.contains(word))
 }
 
 /// The labels of a dataset's channels.
@@ -102,33 +127,45 @@ pub(super) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// Names or units of channels.
-type Names = Limited<String, MOST_CHANNELS>;
-
 /// The model of a text, under the name that a list of models has for it; nothing where it has no size.
 fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin =
         text.origin().or_else(|| (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin()));
-    let labels = |count: usize, names: Option<Names>, units: Option<Names>| -> Vec<ChannelLabel> {
-        let part = |list: &Option<Names>, at: usize| {
-            let list = list.as_ref().filter(|list| list.0.len() == count)?;
-            Some(list.0[at].clone()).filter(|text| !text.is_empty())
-        };
-        (0..count).map(|at| ChannelLabel { name: part(&names, at), unit: part(&units, at) }).collect()
-    };
     let (outputs, inputs) = match (&text.b, &text.c, &text.frequency_response) {
         (Some(b), Some(c), _) => (c.shape[0], b.shape[1]),
         (.., Some(response)) => (response.re.shape[0], response.re.shape[1]),
         _ => return None,
     };
-    let inputs = labels(inputs, text.inputs.take(), text.input_units.take());
-    let outputs = labels(outputs, text.outputs.take(), text.output_units.take());
+    let input_units = Limited::entries(text.input_units.take());
+    let output_units = Limited::entries(text.output_units.take());
+    let inputs = labels_of(inputs, Limited::entries(text.inputs.take()), input_units)?;
+    let outputs = labels_of(outputs, Limited::entries(text.outputs.take()), output_units)?;
+    let facts = Facts {
+        condition: text.condition,
+        airspeed_kt: text.airspeed_kt,
+        altitude_ft: text.altitude_ft,
+        mass_kg: text.mass_kg,
+        ..Facts::default()
+    };
     let notes = Limited::entries(text.notes.take());
     let mut draft = text.into_draft(origin.unwrap_or(Origin::Perturbed { perturbation: None }));
     let source = draft.source.get_or_insert_with(Provenance::default);
     source.variable = Some(format!("models{{{}}}", index + 1));
     let notes = if notes.is_empty() { source.note.take().into_iter().collect() } else { notes };
-    Some(FoundModel { draft, inputs, outputs, facts: Facts::default(), notes })
+    Some(FoundModel { draft, inputs, outputs, facts, notes })
+}
+
+/// The labels of channels out of their names and units, empty where there are none; nothing where there are more or fewer of them.
+fn labels_of(count: usize, names: Vec<LabelText>, units: Vec<String>) -> Option<Vec<ChannelLabel>> {
+    if [names.len(), units.len()].into_iter().any(|length| length != 0 && length != count) {
+        return None;
+    }
+    let label = |at: usize| {
+        let (name, unit) = names.get(at).map(|label| label.clone().into_parts()).unwrap_or_default();
+        let unit = units.get(at).cloned().filter(|unit| !unit.is_empty()).or(unit);
+        ChannelLabel { name: Some(name).filter(|name| !name.is_empty()), unit: unit.filter(|unit| !unit.is_empty()) }
+    };
+    Some((0..count).map(label).collect())
 }
 
 // Models identified from flight records, `gdcm-identified` 1: what `gdcm identify` writes.

@@ -73,6 +73,8 @@ pub struct AssemblyState {
     pub faults: Vec<String>,
     /// What is no model, in words.
     pub ignored: Vec<String>,
+    /// What of files with models was not used, a line for each.
+    pub unused: Vec<String>,
     /// The tables of columns among the files, with the headings that they were read by.
     pub tables: Headings,
     /// The units that have to be said before these tables are frequency responses.
@@ -117,6 +119,7 @@ impl AssemblyState {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();
         self.ignored.clear();
+        self.unused.clear();
         self.tables.clear();
         self.unsaid.clear();
     }

@@ -70,6 +70,10 @@ pub(super) fn details_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palett
     if assembly.tables.contains_key(part.found.file()) {
         columns_ui(ui, assembly, part.found.file(), palette, commands);
     }
+    for side in part.sides_by_position() {
+        let words = format!("caution: {side}s have no names in the file: taken in the order of the dataset");
+        ui.label(palette.small_warning(words));
+    }
     let notes = part.found.notes.iter().chain(&part.inputs.notes).chain(&part.outputs.notes);
     let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
     for note in notes.cloned().chain(uses.filter_map(|used| used.words.clone())) {

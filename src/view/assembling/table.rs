@@ -138,6 +138,13 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
     };
     ui.label(RichText::new(heading).strong().color(if problems.is_empty() { palette.text } else { palette.warning }));
     ScrollArea::vertical().id_salt("problems").auto_shrink(false).show(ui, |ui| {
+        for caution in assembly.cautions() {
+            let words = format!("caution: {}", assembly.caution_words(&caution));
+            let response = ui.add(Label::new(palette.small_warning(words)).sense(Sense::click()).wrap());
+            if let Some(part) = caution.parts.first().filter(|_| response.clicked()) {
+                commands.push(AssemblingCommand::Select(*part).into());
+            }
+        }
         for (part, words) in problems.iter().take(MOST_LINES) {
             let text = RichText::new(words).size(SMALL_SIZE).color(palette.text);
             let response = ui.add(Label::new(text).sense(Sense::click()).wrap());
@@ -155,7 +162,8 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
         }
         let not_read = state.faults.iter().map(|fault| palette.small_warning(format!("not read: {fault}")));
         let no_models = state.ignored.iter().map(|words| palette.small(format!("no model: {words}")));
-        for text in not_read.chain(no_models).take(MOST_LINES) {
+        let not_used = state.unused.iter().map(|words| palette.small(words));
+        for text in not_read.chain(no_models).chain(not_used).take(MOST_LINES) {
             ui.add(Label::new(text).wrap());
         }
     });

@@ -24,6 +24,30 @@ pub struct Part {
     pub sample_time_s: Option<f64>,
 }
 
+impl Part {
+    /// The sides whose channels have no names in the file.
+    pub fn sides_by_position(&self) -> Vec<ChannelSide> {
+        let sides = [ChannelSide::Input, ChannelSide::Output];
+        sides.into_iter().filter(|side| side.of(&self.inputs, &self.outputs).by_position).collect()
+    }
+}
+
+/// Models whose channels were taken by their position, because their files have no names for them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AssemblyCaution {
+    /// The sides.
+    pub sides: Vec<ChannelSide>,
+    /// The models, by their places among those found.
+    pub parts: Vec<usize>,
+}
+
+impl AssemblyCaution {
+    /// Its stable name.
+    pub fn code(&self) -> &'static str {
+        "channels-by-position"
+    }
+}
+
 /// Models found in files, and what the rules make of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
@@ -135,6 +159,7 @@ impl Assembly {
                 let unread = part.row.unread.iter().cloned();
                 problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart(part))));
             }
+            problems.extend(self.name_contradictions(part).into_iter().map(|kind| Problem::of(index, kind)));
             problems.extend(row_problems(part).into_iter().map(|kind| Problem::of(index, kind)));
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
@@ -150,6 +175,59 @@ impl Assembly {
             problems.push(Problem::of_all(ProblemKind::Dataset(format!("{}: {}", error.place, error.fault))));
         }
         problems
+    }
+
+    /// What the file of a model says otherwise than its names, as far as the rules do not settle it.
+    fn name_contradictions(&self, part: &Part) -> Vec<ProblemKind> {
+        let said = self.rules.rows.get(&part.found.key());
+        let mut problems = Vec::new();
+        for NameContradiction { field, of_file, of_name } in part.row.contradictions.clone() {
+            if said.is_none_or(|said| !said.settles(&field)) {
+                problems.push(ProblemKind::NameContradiction { field, of_file, of_name });
+            }
+        }
+        problems
+    }
+
+    /// What is to be looked at though the dataset can be made.
+    pub fn cautions(&self) -> Vec<AssemblyCaution> {
+        let mut cautions: Vec<AssemblyCaution> = Vec::new();
+        for (index, part) in self.taken() {
+            let sides = part.sides_by_position();
+            if sides.is_empty() {
+                continue;
+            }
+            match cautions.iter_mut().find(|caution| caution.sides == sides) {
+                Some(known) => known.parts.push(index),
+                None => cautions.push(AssemblyCaution { sides, parts: vec![index] }),
+            }
+        }
+        cautions
+    }
+
+    /// A caution in words.
+    pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
+        /// Files that are named.
+        const NAMED: usize = 3;
+        let keys = caution.parts.iter().take(NAMED).map(|part| self.parts[*part].found.key());
+        let rest = caution.parts.len().saturating_sub(NAMED);
+        let more = (rest > 0).then(|| format!("{rest} more"));
+        let files: Vec<String> = keys.chain(more).collect();
+        let sides: Vec<String> = caution
+            .sides
+            .iter()
+            .map(|side| {
+                let channels = side.of(&self.rules.inputs, &self.rules.outputs);
+                let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+                format!("{side}s taken as {}", names.join(", "))
+            })
+            .collect();
+        format!(
+            "no names of channels in the file: {}, by their position in the dataset; check the order, or name them under \"models\" in \
+             the rules: {}",
+            sides.join(" and "),
+            files.join(", ")
+        )
     }
 
     fn channel_problems(&self) -> Vec<Problem> {
@@ -388,6 +466,10 @@ fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     if let Some(source) = &mut earlier.source {
         let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
         source.note = Some(format!("{note}with {}", part.found.key()));
+        let of_part = part.found.draft.source.iter().flat_map(|source| &source.unused);
+        source.unused.extend(of_part.cloned());
+        source.by_position.extend(part.sides_by_position());
+        source.by_position.dedup();
     }
 }
 
@@ -421,6 +503,10 @@ fn model_of(part: &Part) -> ModelDraft {
     if !words.is_empty() {
         let source = model.source.get_or_insert_with(Provenance::default);
         source.note = Some(words.join("; "));
+    }
+    let by_position = part.sides_by_position();
+    if !by_position.is_empty() {
+        model.source.get_or_insert_with(Provenance::default).by_position = by_position;
     }
     model
 }
@@ -584,5 +670,87 @@ mod tests {
         let mut whole = converted(&measured(&[1.0, 2.0, 3.0, 4.0]), &[used(0, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
         note_unmeasured(&mut whole, &rules);
         assert_eq!((whole.response.unwrap().valid_bands, whole.source), (None, None));
+    }
+
+    /// A model of one input and one output in a file, with matrices.
+    fn found(file: &str, variable: Option<&str>, facts: Facts) -> FoundModel {
+        let scalar = |value: f64| Some(DMatrix::from_element(1, 1, value));
+        let source =
+            Provenance { file: Some(file.to_owned()), variable: variable.map(str::to_owned), ..Provenance::default() };
+        FoundModel {
+            draft: ModelDraft {
+                name: String::new(),
+                origin: Origin::Perturbed { perturbation: None },
+                matrices: [scalar(-1.0), scalar(1.0), scalar(1.0), scalar(0.0)],
+                timing: Timing::default(),
+                response: None,
+                source: Some(source),
+                states: Vec::new(),
+                bands: None,
+            },
+            inputs: vec![ChannelLabel::default()],
+            outputs: vec![ChannelLabel::default()],
+            facts,
+            notes: Vec::new(),
+        }
+    }
+
+    fn at(airspeed_kt: f64) -> Facts {
+        Facts { airspeed_kt: Some(airspeed_kt), ..Facts::default() }
+    }
+
+    #[test]
+    fn an_airspeed_of_the_folder_that_is_not_the_file_s_is_a_problem_until_it_is_said() {
+        let contradictions = |assembly: &Assembly| -> Vec<ProblemKind> {
+            let kinds = assembly.problems().iter().map(|problem| problem.kind.clone());
+            kinds.filter(|kind| matches!(kind, ProblemKind::NameContradiction { .. })).collect()
+        };
+        let models = vec![found("c1_090kt/nominal.mat", None, at(70.0))];
+        let assembly = Assembly::new(models, Rules::default());
+        let expected = ProblemKind::NameContradiction { field: "airspeed_kt".into(), of_file: 70.0, of_name: 90.0 };
+        assert_eq!(contradictions(&assembly), [expected]);
+        let mut rules = Rules::default();
+        rules.rows.entry("c1_090kt/nominal.mat".into()).or_default().airspeed_kt = Some(70.0);
+        assert_eq!(contradictions(&assembly.with_rules(rules)), []);
+        let rounded = Assembly::new(vec![found("c1_090kt/nominal.mat", None, at(90.3))], Rules::default());
+        assert_eq!(contradictions(&rounded), []);
+    }
+
+    #[test]
+    fn models_of_several_airspeeds_in_one_file_are_several_conditions_in_every_file() {
+        let mut models = Vec::new();
+        for (file, airspeeds) in [("physics.mat", [60.0, 80.0]), ("flight/identified.npz", [80.0, 60.0])] {
+            for (page, airspeed_kt) in airspeeds.into_iter().enumerate() {
+                models.push(found(file, Some(&format!("(:,:,{})", page + 1)), at(airspeed_kt)));
+            }
+        }
+        let assembly = Assembly::new(models, Rules::default());
+        let rows: Vec<(Option<i64>, Option<RowRole>)> =
+            assembly.parts().iter().map(|part| (part.row.condition, part.row.role)).collect();
+        let (nominal, identified) = (Some(RowRole::Nominal), Some(RowRole::Identified));
+        assert_eq!(rows, [(Some(1), nominal), (Some(2), nominal), (Some(2), identified), (Some(1), identified)]);
+    }
+
+    #[test]
+    fn channels_taken_by_position_are_a_caution_and_marked_in_the_dataset() {
+        let models =
+            vec![found("c1_90kt/nominal.mat", None, at(90.0)), found("c1_90kt/identified.mat", None, at(90.0))];
+        let mut rules = proposed_rules("", &models);
+        for channel in rules.inputs.iter_mut().chain(&mut rules.outputs) {
+            (channel.unit, channel.unit_in_files) = ("deg".into(), Some("deg".into()));
+        }
+        let assembly = Assembly::new(models, rules.clone());
+        let cautions = assembly.cautions();
+        let both = vec![ChannelSide::Input, ChannelSide::Output];
+        assert_eq!(cautions, [AssemblyCaution { sides: both.clone(), parts: vec![0, 1] }]);
+        assert_eq!(cautions[0].code(), "channels-by-position");
+        let dataset = assembly.dataset("").unwrap();
+        let source = dataset.conditions()[0].bundle(crate::dataset::BundleKind::Physics)[0].source.clone().unwrap();
+        assert_eq!(source.by_position, both);
+        for key in ["c1_90kt/nominal.mat", "c1_90kt/identified.mat"] {
+            let row = rules.rows.entry(key.into()).or_default();
+            (row.inputs, row.outputs) = (Some(vec!["input 1".into()]), Some(vec!["output 1".into()]));
+        }
+        assert_eq!(assembly.with_rules(rules).cautions(), []);
     }
 }

@@ -20,8 +20,10 @@ pub struct ChannelMatch {
     pub uses: Vec<Option<ChannelUse>>,
     /// What is missing or not clear.
     pub problems: Vec<ProblemKind>,
-    /// What was taken without a word in the file, such as the order of channels without names.
+    /// What was taken without a word in the file.
     pub notes: Vec<String>,
+    /// Whether the channels have no names in the file, and were taken in the order of the dataset.
+    pub by_position: bool,
 }
 
 impl ChannelMatch {
@@ -44,7 +46,7 @@ impl ChannelMatch {
             return found;
         }
         if unnamed {
-            found.notes.push(format!("{side}s have no names in the file: taken in the order of the dataset"));
+            found.by_position = true;
         }
         for (place, rule) in rules.iter().enumerate() {
             let index = if unnamed { Some(place) } else { found.find(side, labels, rule, partial) };
@@ -397,7 +399,7 @@ mod tests {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let unnamed = |count| vec![ChannelLabel { name: None, unit: Some("%".into()) }; count];
         let found = matched(ChannelSide::Input, &unnamed(2), &rules, false);
-        assert!(found.problems.is_empty() && found.notes.len() == 1);
+        assert!(found.problems.is_empty() && found.by_position);
         let found = matched(ChannelSide::Input, &unnamed(3), &rules, false);
         assert_eq!(found.problems, [ProblemKind::Unnamed { side: ChannelSide::Input, expected: 2, found: 3 }]);
     }

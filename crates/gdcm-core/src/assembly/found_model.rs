@@ -29,6 +29,10 @@ pub struct Facts {
     pub altitude_ft: Option<f64>,
     /// Mass \[kg\].
     pub mass_kg: Option<f64>,
+    /// Name of the model in its bundle.
+    pub name: Option<String>,
+    /// Whether a dataset of this program says all this: names of files and folders do not contradict it then.
+    pub is_of_dataset: bool,
     /// Its flight records, their files relative to what was asked for.
     pub records: Vec<ConditionRecord>,
 }
@@ -193,6 +197,19 @@ pub struct Row {
     pub perturbation: BTreeMap<String, f64>,
     /// Parts of its name that say how the trim differs and are not understood.
     pub unread: Vec<String>,
+    /// What its file says otherwise than the names of the file and its folders.
+    pub contradictions: Vec<NameContradiction>,
+}
+
+/// A number that a file says otherwise than the names of the file and its folders do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NameContradiction {
+    /// What it is of, as the rules call it: "airspeed_kt".
+    pub field: String,
+    /// In the file.
+    pub of_file: f64,
+    /// In the names.
+    pub of_name: f64,
 }
 
 impl Row {
@@ -331,20 +348,26 @@ pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
 
 fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
     let facts = &model.facts;
+    let offsets = offsets_of(&model.draft.origin);
     let mut row = Row {
         condition: facts.condition,
+        role: role_of(model),
         airspeed_kt: facts.airspeed_kt,
         altitude_ft: facts.altitude_ft,
         mass_kg: facts.mass_kg,
+        perturbation: offsets.clone(),
         ..Row::default()
     };
     let path = without_extension(model.file());
     let name = if model.variable().is_empty() { path.clone() } else { format!("{path}#{}", model.variable()) };
+    let mut of_name = Row::default();
     for pattern in &rules.patterns {
         pattern.read(&name, &mut row);
+        pattern.read(&name, &mut of_name);
     }
+    row.contradictions = contradictions_of_name(model, all, &of_name);
     // What else a hyphen and a number may be ("rev-3") is not asked about.
-    if !row.perturbation.is_empty() {
+    if offsets.is_empty() && !row.perturbation.is_empty() {
         row.unread = unread_offsets(name.rsplit('/').next().unwrap_or(&name), &rules.patterns);
     }
     if let Origin::Identified { method, .. } = &model.draft.origin {
@@ -354,7 +377,8 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
     if row.role.is_none() && model.response().is_some() {
         row.role = Some(RowRole::Identified);
     }
-    if row.role.is_none() && !row.perturbation.is_empty() {
+    let is_at_rest = row.perturbation.values().all(|offset| *offset == 0.0);
+    if row.role.is_none() && !is_at_rest {
         row.role = Some(RowRole::Perturbed);
     }
     if row.name.is_empty() {
@@ -363,12 +387,82 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
     row
 }
 
+/// The role of a physics model that the file itself says. That of a model of which nothing is known is no perturbed one.
+fn role_of(model: &FoundModel) -> Option<RowRole> {
+    match &model.draft.origin {
+        Origin::Nominal { .. } => Some(RowRole::Nominal),
+        Origin::Perturbed { .. } if model.facts.is_of_dataset => Some(RowRole::Perturbed),
+        Origin::Identified { .. } | Origin::Perturbed { .. } => None,
+    }
+}
+
+/// The offsets of the trim that the file itself says.
+fn offsets_of(origin: &Origin) -> BTreeMap<String, f64> {
+    match origin {
+        Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
+            perturbation.clone().unwrap_or_default()
+        }
+        Origin::Identified { .. } => BTreeMap::new(),
+    }
+}
+
+/// What a file says otherwise than its name and its folders. A name is rounded: airspeeds differ by more than 1 kt then, the rest by more
+/// than a hundredth. The name of a file with models of several airspeeds says none of them.
+fn contradictions_of_name(model: &FoundModel, all: &[FoundModel], of_name: &Row) -> Vec<NameContradiction> {
+    let facts = &model.facts;
+    if facts.is_of_dataset {
+        return Vec::new();
+    }
+    let mut contradictions = Vec::new();
+    if !has_several_airspeeds(all, model.file()) {
+        let condition = (facts.condition.map(|id| id as f64), of_name.condition.map(|id| id as f64));
+        contradictions.extend(contradiction("condition", condition.0, condition.1, 0.0));
+        contradictions.extend(contradiction("airspeed_kt", facts.airspeed_kt, of_name.airspeed_kt, 1.0));
+        contradictions.extend(contradiction(
+            "altitude_ft",
+            facts.altitude_ft,
+            of_name.altitude_ft,
+            hundredth(facts.altitude_ft),
+        ));
+        contradictions.extend(contradiction("mass_kg", facts.mass_kg, of_name.mass_kg, hundredth(facts.mass_kg)));
+    }
+    for (coordinate, offset) in offsets_of(&model.draft.origin) {
+        let of_name = of_name.perturbation.get(&coordinate).copied();
+        let field = format!("perturbation, {coordinate}");
+        contradictions.extend(contradiction(&field, Some(offset), of_name, hundredth(Some(offset))));
+    }
+    contradictions
+}
+
+fn hundredth(value: Option<f64>) -> f64 {
+    0.01 * value.unwrap_or(0.0).abs()
+}
+
+/// The contradiction of a number in the file and one in its names, where they differ by more than a tolerance.
+fn contradiction(field: &str, of_file: Option<f64>, of_name: Option<f64>, tolerance: f64) -> Option<NameContradiction> {
+    let (of_file, of_name) = (of_file?, of_name?);
+    if (of_file - of_name).abs() <= tolerance {
+        return None;
+    }
+    Some(NameContradiction { field: field.to_owned(), of_file, of_name })
+}
+
+/// Whether a file holds models of several airspeeds, and so of several conditions.
+fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
+    let mut airspeeds = models.iter().filter(|model| model.file() == file).filter_map(|model| model.facts.airspeed_kt);
+    let first = airspeeds.next();
+    airspeeds.any(|airspeed| Some(airspeed) != first)
+}
+
 /// The file's name without its folder; the variable beside it where the file holds several models; "measured" of a response that
 /// is one part of a model.
 fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part = model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
     if model.response().is_some() && is_part {
         return "measured".to_owned();
+    }
+    if let Some(name) = &model.facts.name {
+        return name.clone();
     }
     let stem = path.rsplit('/').next().unwrap_or(path);
     let several = all.iter().filter(|other| other.file() == model.file()).count() > 1;
@@ -385,10 +479,15 @@ fn without_extension(file: &str) -> String {
     Path::new(file).with_extension("").to_string_lossy().into_owned()
 }
 
-/// Where no name says a number, each folder is a condition, in the order of their names.
+/// Where no name says a number, each folder is a condition, in the order of their names; where one file holds models of several
+/// airspeeds, each airspeed is one, in the order of the models.
 fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     if rows.iter().any(|row| row.condition.is_some()) {
         return;
+    }
+    let files: BTreeSet<&str> = models.iter().map(FoundModel::file).collect();
+    if files.into_iter().any(|file| has_several_airspeeds(models, file)) {
+        return number_airspeeds(rows);
     }
     let folder = |model: &FoundModel| match without_extension(model.file()).rsplit_once('/') {
         Some((folder, _)) => folder.to_owned(),
@@ -397,6 +496,22 @@ fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     let folders: BTreeSet<String> = models.iter().map(folder).collect();
     for (model, row) in models.iter().zip(rows) {
         row.condition = folders.iter().position(|of| *of == folder(model)).map(|index| index as i64 + 1);
+    }
+}
+
+/// Each airspeed, with its altitude and mass, is a condition; models without an airspeed stay without one.
+fn number_airspeeds(rows: &mut [Row]) {
+    let mut states: Vec<[Option<f64>; 3]> = Vec::new();
+    for row in rows {
+        if row.airspeed_kt.is_none() {
+            continue;
+        }
+        let state = [row.airspeed_kt, row.altitude_ft, row.mass_kg];
+        let place = states.iter().position(|known| *known == state).unwrap_or(states.len());
+        if place == states.len() {
+            states.push(state);
+        }
+        row.condition = Some(place as i64 + 1);
     }
 }
 

@@ -49,14 +49,14 @@ const KNOT: f64 = 1852.0 / 3600.0;
 /// Newtons in a pound-force.
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
-/// Every unit that is known: its dimension, its size, and its spellings as [`folded_unit`] leaves them, the usual one first.
+/// Every unit that is known (`rps` is not: it is radians to some and revolutions to others): its dimension, its size, and its spellings as [`folded_unit`] leaves them, the usual one first.
 const UNITS: &[(Dimension, f64, &[&str])] = {
     use Dimension::*;
     &[
         (Angle, 1.0, &["rad", "radian"]),
         (Angle, 1e-3, &["mrad"]),
         (Angle, PI / 180.0, &["deg", "degree"]),
-        (AngularRate, 1.0, &["rad/s", "rps", "rad/s1"]),
+        (AngularRate, 1.0, &["rad/s", "rad/s1"]),
         (AngularRate, 1e3, &["rad/ms", "rad/millis"]),
         (AngularRate, 1.0 / 60.0, &["rad/min"]),
         (AngularRate, PI / 180.0, &["deg/s", "dps"]),

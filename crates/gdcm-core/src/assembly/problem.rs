@@ -154,6 +154,19 @@ pub enum ProblemKind {
         /// In another.
         second: String,
     },
+    /// A file says otherwise than its name and its folders.
+    #[error(
+        "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or say which holds (\"{field}\" \
+         under \"models\" in the rules)", crate::units::number(*of_file), crate::units::number(*of_name)
+    )]
+    NameContradiction {
+        /// The number, as the rules call it.
+        field: String,
+        /// In the file.
+        of_file: f64,
+        /// In the names.
+        of_name: f64,
+    },
     /// A condition without a nominal model, or with several.
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal {
@@ -227,6 +240,7 @@ impl ProblemKind {
             Self::NoRole => "no-role",
             Self::NoAirspeed => "no-airspeed",
             Self::Contradiction { .. } => "contradiction",
+            Self::NameContradiction { .. } => "name-contradiction",
             Self::Nominal { .. } => "nominal",
             Self::NoIdentified(_) => "no-identified",
             Self::Name { .. } => "duplicate-name",

@@ -104,6 +104,17 @@ pub struct RowRule {
 }
 
 impl RowRule {
+    /// Whether it says a number of which a file and its names say different ones.
+    pub(super) fn settles(&self, field: &str) -> bool {
+        match field {
+            "condition" => self.condition.is_some(),
+            "airspeed_kt" => self.airspeed_kt.is_some(),
+            "altitude_ft" => self.altitude_ft.is_some(),
+            "mass_kg" => self.mass_kg.is_some(),
+            _ => self.perturbation.is_some(),
+        }
+    }
+
     /// Puts what is said here in the place of what was proposed.
     pub fn apply(&self, row: &mut Row) {
         fn put<T: Clone>(said: &Option<T>, place: &mut Option<T>) {

@@ -2,6 +2,7 @@
 
 use nalgebra::Complex;
 
+use super::limits::{AVERAGES, WINDOW_S};
 use super::{Pair, PairTable};
 use crate::units::number;
 
@@ -17,7 +18,8 @@ pub struct MeasuredResponse {
     estimate: Estimate,
 }
 
-/// How a response was estimated from records, as far as whoever made it says; it changes no result.
+/// How a response was estimated from records, as far as whoever made it says. With coherence, both set the error bars of the
+/// response (M13) and its weight in the fit of couplings (M16.2); a condition's own gains and delays do not depend on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Number of independent averages.
@@ -66,6 +68,16 @@ pub enum MeasuredResponseError {
         input: usize,
         /// What stands there.
         band: [f64; 2],
+    },
+    /// The number or the length of the averages is outside its range.
+    #[error("{key}: expected a number from {} to {}, found {}", number(range[0]), number(range[1]), number(*value))]
+    Estimate {
+        /// `averages` or `window_s`.
+        key: &'static str,
+        /// The least and the greatest value.
+        range: [f64; 2],
+        /// The value found.
+        value: f64,
     },
     /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
     #[error("{array}, output {output}, input {input}, entry {entry}: expected {expected}, found {}", number(*value))]
@@ -120,9 +132,21 @@ impl MeasuredResponse {
     }
 
     /// The same response, with what is known of how it was estimated.
-    pub fn with_estimate(mut self, estimate: Estimate) -> Self {
+    ///
+    /// # Errors
+    /// [`MeasuredResponseError::Estimate`] where a number is outside the limits that the settings have too.
+    pub fn with_estimate(mut self, estimate: Estimate) -> Result<Self, MeasuredResponseError> {
+        for (key, value, range) in
+            [("averages", estimate.averages, AVERAGES), ("window_s", estimate.window_s, WINDOW_S)]
+        {
+            if let Some(value) = value
+                && !(range[0]..=range[1]).contains(&value)
+            {
+                return Err(MeasuredResponseError::Estimate { key, range, value });
+            }
+        }
         self.estimate = estimate;
-        self
+        Ok(self)
     }
 
     /// Frequencies \[rad/s\], strictly rising.

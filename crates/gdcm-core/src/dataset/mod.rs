@@ -42,4 +42,8 @@ pub mod limits {
     pub const MOST_FREQUENCIES: usize = 100_000;
     /// Coordinates of a perturbation.
     pub const MOST_COORDINATES: usize = 50;
+    /// Least and greatest number of independent averages of a measured response.
+    pub const AVERAGES: [f64; 2] = [1e-6, 1e6];
+    /// Shortest and longest window of a measured response \[s\].
+    pub const WINDOW_S: [f64; 2] = [1e-6, 1e6];
 }

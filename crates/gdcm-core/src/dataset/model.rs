@@ -6,7 +6,10 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
-use super::{MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing, check_frequencies, check_values};
+use super::{
+    ChannelSide, MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing, check_frequencies,
+    check_values,
+};
 
 /// How the response of a model is known.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +67,10 @@ pub struct Provenance {
     pub note: Option<String>,
     /// Names of the flight records that an identified model was made of; none where they are not said.
     pub records: Vec<String>,
+    /// Variables of the file that were not used; the first model of a file lists them for the whole file.
+    pub unused: Vec<String>,
+    /// The sides whose channels were taken by their position, because the file has no names for them.
+    pub by_position: Vec<ChannelSide>,
 }
 
 impl Provenance {
@@ -77,6 +84,7 @@ impl Provenance {
             named("SHA-256 ", &self.sha256),
             (!self.records.is_empty()).then(|| format!("the records {}", self.records.join(", "))),
             self.note.clone(),
+            (!self.unused.is_empty()).then(|| format!("not used: {}", self.unused.join(", "))),
         ];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }

@@ -461,7 +461,7 @@ impl Checker {
                 response.with_valid_bands(bands.map(|_, band| [band[0], band[1]])).map_err(wrong)?
             }
         };
-        Ok(response.with_estimate(draft.estimate))
+        response.with_estimate(draft.estimate).map_err(wrong)
     }
 
     fn bands(&self, place: &Location, draft: &BandsDraft) -> Result<ModelBands, DraftError> {

@@ -57,6 +57,13 @@ pub enum Caution {
     },
     /// The identified representative is measured with coherence, which is switched off (M4a).
     CoherenceNotUsed,
+    /// The channels of models were taken by their position, because their files have no names for them.
+    ChannelsByPosition {
+        /// Which bundle.
+        bundle: BundleKind,
+        /// The models' names.
+        models: Vec<String>,
+    },
     /// A response is fitted whose G is far from one.
     UnusualGain {
         /// The response.
@@ -198,6 +205,33 @@ impl Caution {
         (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
     }
 
+    /// The caution of the kept models of a bundle whose channels were taken by their position, where there are some.
+    pub(super) fn of_positions(condition: &Condition, choice: &BundleChoice, bundle: BundleKind) -> Option<Self> {
+        let kept = condition.bundle(bundle).iter().filter(|model| !choice.rejected.contains(&model.name));
+        let by_position =
+            kept.filter(|model| model.source.as_ref().is_some_and(|source| !source.by_position.is_empty()));
+        let models: Vec<String> = by_position.map(|model| model.name.clone()).collect();
+        if models.is_empty() {
+            return None;
+        }
+        Some(Caution::ChannelsByPosition { bundle, models })
+    }
+
+    /// Its stable name.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Caution::HeldButUndefined { .. } => "held-but-undefined",
+            Caution::NoSuggestions(_) => "no-suggestions",
+            Caution::SetAside { .. } => "set-aside",
+            Caution::NotFinite { .. } => "not-finite",
+            Caution::NumericallyNothing { .. } => "numerically-nothing",
+            Caution::NotCoherent { .. } => "not-coherent",
+            Caution::CoherenceNotUsed => "coherence-not-used",
+            Caution::ChannelsByPosition { .. } => "channels-by-position",
+            Caution::UnusualGain { .. } => "unusual-gain",
+        }
+    }
+
     /// Whether it says that a model is set aside.
     pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
@@ -240,6 +274,11 @@ impl Caution {
                 "the identified representative is measured with coherence, which is switched off: every frequency counts alike"
                     .to_owned()
             }
+            Caution::ChannelsByPosition { bundle, models } => format!(
+                "the channels of {bundle} models were taken by their position, as their files have no names for them: check that their \
+                 order is that of the dataset ({})",
+                few(models)
+            ),
             Caution::UnusualGain { pair, gain } => format!(
                 "{} has a G of {}, outside {} to {}, and is fitted like the others: ignore it in the objective if it means \
                  nothing (in a study file: \"ignored\")",
@@ -249,6 +288,17 @@ impl Caution {
                 USUAL_GAINS.end()
             ),
         }
+    }
+}
+
+/// "nominal, roll+5, roll-5 and 6 more".
+fn few(names: &[String]) -> String {
+    /// Names in full.
+    const NAMED: usize = 3;
+    let listed = names[..names.len().min(NAMED)].join(", ");
+    match names.len().saturating_sub(NAMED) {
+        0 => listed,
+        rest => format!("{listed} and {rest} more"),
     }
 }
 

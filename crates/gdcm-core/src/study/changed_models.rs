@@ -262,7 +262,8 @@ fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result
             let re = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.re).collect());
             let im = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.im).collect());
             let turned = MeasuredResponse::new(response.omega().to_vec(), &re, &im, response.coherence().cloned());
-            let turned = turned.map_err(|error| error.to_string())?.with_estimate(response.estimate());
+            let turned = turned.and_then(|turned| turned.with_estimate(response.estimate()));
+            let turned = turned.map_err(|error| error.to_string())?;
             Ok(Dynamics::Measured(match response.valid_bands() {
                 Some(bands) => turned.with_valid_bands(bands.clone()).map_err(|error| error.to_string())?,
                 None => turned,

@@ -101,7 +101,8 @@ pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Ve
             let choice = study.choice(condition.id()).bundle(kind);
             let of_bundle =
                 caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
-            cautions.extend(of_bundle.into_iter().map(|caution| (condition.id(), caution)));
+            let of_positions = Caution::of_positions(condition, choice, kind);
+            cautions.extend(of_bundle.into_iter().chain(of_positions).map(|caution| (condition.id(), caution)));
         }
     }
     Ok(cautions)
@@ -157,7 +158,10 @@ impl Comparison {
         let top = grid.omega().last().copied().unwrap_or_default();
         let of_kind = |kind| {
             let measured = figures.bundle(kind).measured();
-            caution::of_models(condition, choice.bundle(kind), kind, responses.bundle(kind), measured, top)
+            let choice = choice.bundle(kind);
+            let mut cautions = caution::of_models(condition, choice, kind, responses.bundle(kind), measured, top);
+            cautions.extend(Caution::of_positions(condition, choice, kind));
+            cautions
         };
         let mut cautions: Vec<Caution> = BundleKind::BOTH.into_iter().flat_map(of_kind).collect();
         let representative = |kind: BundleKind| {

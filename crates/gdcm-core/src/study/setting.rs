@@ -1,7 +1,7 @@
 //! The one table of settings: what each is called, where it stands in files and on a command line, what it may be, and how the
 //! window shows it. Undo, comparisons of decisions, refusals, the report, the command line and the window read it.
 
-use crate::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use crate::dataset::{GREATEST_OMEGA, LEAST_OMEGA, limits};
 use crate::response::LeadOrder;
 use crate::schedule::ScheduleKind;
 
@@ -335,7 +335,7 @@ pub static AVERAGES: Setting = row(
     ["averages of measured responses", "error_bars.averages", "--averages"],
     "Number of independent averages of measured responses whose files do not say it",
     Kind::Optional {
-        range: [1e-6, 1e6],
+        range: limits::AVERAGES,
         nothing: ["auto", "as the files say"],
         on: None,
         get: |of| of.uncertainty.averages,
@@ -348,7 +348,7 @@ pub static WINDOW: Setting = row(
     ["windows of measured responses", "error_bars.window_s", "--averaging-window"],
     "Length of the windows of measured responses whose files do not say it",
     Kind::Optional {
-        range: [1e-6, 1e6],
+        range: limits::WINDOW_S,
         nothing: ["auto", "as the files say"],
         on: None,
         get: |of| of.uncertainty.window_s,

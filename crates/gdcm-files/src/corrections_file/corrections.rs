@@ -385,7 +385,7 @@ impl<'a> ChannelNames<'a> {
 /// Where the models come from, as far as their dataset says.
 fn sources(condition: &Condition) -> Value {
     let entry = |bundle: BundleKind, model: &Model| {
-        let Provenance { file, sha256, variable, made, note, records } = model.source.as_ref()?;
+        let Provenance { file, sha256, variable, made, note, records, unused, .. } = model.source.as_ref()?;
         let source = json!({
             "bundle": bundle.to_string(),
             "model": model.name,
@@ -395,8 +395,9 @@ fn sources(condition: &Condition) -> Value {
             "made": made,
             "note": note,
             "records": records,
+            "unused": unused,
         });
-        Some(without_empty(source, &["records"]))
+        Some(without_empty(source, &["records", "unused"]))
     };
     let of_bundle = |kind| condition.bundle(kind).iter().filter_map(move |model| entry(kind, model));
     BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()

@@ -22,7 +22,7 @@ use gdcm_core::message_text::{sanitized, sanitized_path};
 
 use text::{DatasetText, FORMAT};
 
-pub(super) use text::{ModelText, RecordText};
+pub(super) use text::{LabelText, ModelText, RecordText};
 
 /// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../assets/example-dataset.json.gz");

@@ -7,9 +7,9 @@ use gdcm_core::dataset::limits::{
     MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
 use gdcm_core::dataset::{
-    BandsDraft, BundleKind, Channel, ChannelRemedy, Condition, ConditionDraft, ConditionId, ConditionRecord, Dataset,
-    DatasetDraft, Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance, RecordKind, ResponseArray,
-    ResponseDraft, Timing,
+    BandsDraft, BundleKind, Channel, ChannelRemedy, ChannelSide, Condition, ConditionDraft, ConditionId,
+    ConditionRecord, Dataset, DatasetDraft, Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance,
+    RecordKind, ResponseArray, ResponseDraft, Timing,
 };
 use gdcm_core::whole_number::{whole, whole_or_none};
 use nalgebra::DMatrix;
@@ -132,11 +132,20 @@ pub(crate) struct ModelText {
     pub(crate) method: Option<String>,
     #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
     pub(crate) order: Option<usize>,
+    /// What the file of a model outside a dataset says about its flight condition.
+    #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
+    pub(crate) condition: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) airspeed_kt: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) altitude_ft: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) mass_kg: Option<f64>,
     /// Names of the channels of a model outside a dataset, empty where its file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) inputs: Option<Limited<String, MOST_CHANNELS>>,
+    pub(crate) inputs: Option<Limited<LabelText, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) outputs: Option<Limited<String, MOST_CHANNELS>>,
+    pub(crate) outputs: Option<Limited<LabelText, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) input_units: Option<Limited<String, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -173,6 +182,28 @@ pub(crate) struct ModelText {
     pub(crate) recommended: Option<bool>,
 }
 
+/// A channel of a model outside a dataset: its name, or the object that is a channel of a dataset.
+#[derive(Clone, Deserialize, Serialize)]
+#[serde(untagged)]
+pub(crate) enum LabelText {
+    Name(String),
+    Channel {
+        name: String,
+        #[serde(default)]
+        unit: Option<String>,
+    },
+}
+
+impl LabelText {
+    /// The name and the unit.
+    pub(crate) fn into_parts(self) -> (String, Option<String>) {
+        match self {
+            Self::Name(name) => (name, None),
+            Self::Channel { name, unit } => (name, unit),
+        }
+    }
+}
+
 /// Which file a model was made from.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
@@ -189,6 +220,33 @@ pub(crate) struct SourceText {
     /// Flight records of the condition.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<String, MOST_PIECES>>,
+    /// Variables of the file that were not used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) unused: Option<Limited<String, MOST_PIECES>>,
+    /// The sides whose channels were taken by their position: "inputs", "outputs".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) by_position: Option<Limited<SideText, 2>>,
+}
+
+/// One side of a model.
+#[derive(Clone, Copy, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum SideText {
+    Inputs,
+    Outputs,
+}
+
+impl SideText {
+    fn side(self) -> ChannelSide {
+        match self {
+            Self::Inputs => ChannelSide::Input,
+            Self::Outputs => ChannelSide::Output,
+        }
+    }
+
+    fn of(side: ChannelSide) -> Self {
+        side.of(Self::Inputs, Self::Outputs)
+    }
 }
 
 /// Standard deviations of a model's response.
@@ -385,6 +443,10 @@ impl ModelText {
             ("method", is_physics && self.method.is_some()),
             ("order", is_physics && self.order.is_some()),
             ("bands", is_physics && self.bands.is_some()),
+            ("condition", self.condition.is_some()),
+            ("airspeed_kt", self.airspeed_kt.is_some()),
+            ("altitude_ft", self.altitude_ft.is_some()),
+            ("mass_kg", self.mass_kg.is_some()),
             ("inputs", self.inputs.is_some()),
             ("outputs", self.outputs.is_some()),
             ("input_units", self.input_units.is_some()),
@@ -530,12 +592,30 @@ impl ResponseText {
 
 impl SourceText {
     fn into_provenance(self) -> Provenance {
-        let Self { file, sha256, variable, made, note, records } = self;
-        Provenance { file, sha256, variable, made, note, records: Limited::entries(records) }
+        let Self { file, sha256, variable, made, note, records, unused, by_position } = self;
+        Provenance {
+            file,
+            sha256,
+            variable,
+            made,
+            note,
+            records: Limited::entries(records),
+            unused: Limited::entries(unused),
+            by_position: Limited::entries(by_position).into_iter().map(SideText::side).collect(),
+        }
     }
 
     fn of(source: Provenance) -> Self {
-        let Provenance { file, sha256, variable, made, note, records } = source;
-        Self { file, sha256, variable, made, note, records: Limited::some(records) }
+        let Provenance { file, sha256, variable, made, note, records, unused, by_position } = source;
+        Self {
+            file,
+            sha256,
+            variable,
+            made,
+            note,
+            records: Limited::some(records),
+            unused: Limited::some(unused),
+            by_position: Limited::some(by_position.into_iter().map(SideText::of).collect()),
+        }
     }
 }

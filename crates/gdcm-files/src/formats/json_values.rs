@@ -42,11 +42,11 @@ pub(crate) const JSON: Importer = Importer {
                 // The text is unpacked again.
                 let source = Source::of(bytes, path, budget)?;
                 let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
-                return Ok(Contents::Dataset(Box::new(loaded.dataset.as_ref().clone())));
+                return Ok(Contents::Dataset(Box::new(loaded.dataset.as_ref().clone()), loaded.cautions));
             }
             Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
-                if let Some(models) = found_models(text, path, budget) {
-                    return Ok(Contents::Models(models));
+                if let Some((models, unknown)) = found_models(text, path, budget) {
+                    return Ok(Contents::Models(models, unknown));
                 }
             }
             _ => {}

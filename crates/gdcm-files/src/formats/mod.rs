@@ -91,10 +91,10 @@ pub(crate) enum Contents {
     },
     /// Numbers in lines: what they are depends on what is looked for.
     Text(String),
-    /// A dataset of this program.
-    Dataset(Box<Dataset>),
-    /// Models of this program.
-    Models(Vec<FoundModel>),
+    /// A dataset of this program, with what of it is not known.
+    Dataset(Box<Dataset>, Vec<String>),
+    /// Models of this program, with what of them is not known.
+    Models(Vec<FoundModel>, Vec<String>),
     /// Logs of an aircraft: records, of whatever clocks.
     Logs(Vec<Columns>),
     /// The files of an archive.

@@ -1,13 +1,15 @@
 //! Fields under names, wherever they stand: in a struct, in an object, in a file.
 
-use std::cell::OnceCell;
-use std::collections::HashMap;
+use std::cell::{OnceCell, RefCell};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
 
-use gdcm_core::assembly::{ChannelLabel, Facts, SAMPLE_TIME_NAMES, direction_of, folded_name};
-use gdcm_core::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
+use gdcm_core::assembly::{ChannelLabel, Facts, RowRole, direction_of, folded_name};
+use gdcm_core::dataset::{ChannelSide, Origin};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
 
+use crate::recognise::delays::{DelayField, delay_fields};
 use crate::variables::{Array, StructArray, Value, Variable};
 
 /// Parts in which objects of MATLAB and GNU Octave keep what other files have beside the rest.
@@ -20,16 +22,27 @@ const DEEPEST_PART: usize = 3;
 /// The first field of each name; made when a record is first asked, for one may have as many fields as a file has bytes.
 #[derive(Clone, Debug, Default)]
 struct Index<'v> {
-    exact: HashMap<&'v str, &'v Value>,
+    exact: HashMap<&'v str, Field<'v>>,
     /// Without case and underscores.
-    folded: HashMap<String, &'v Value>,
+    folded: HashMap<String, Field<'v>>,
 }
+
+/// A value under its name.
+pub(crate) type Field<'v> = (&'v str, &'v Value);
 
 /// Fields that belong together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Record<'v> {
-    fields: Vec<(&'v str, &'v Value)>,
+    fields: Vec<Field<'v>>,
     index: OnceCell<Index<'v>>,
+    /// Names of the fields that were used, and what of a struct among them was not.
+    used: RefCell<BTreeSet<&'v str>>,
+    unused_inside: RefCell<Vec<String>>,
+    delays: OnceCell<Vec<DelayField<'v>>>,
+    /// The record around the one that this lies in: what it says holds for every model inside.
+    outer: Option<Rc<Record<'v>>>,
+    /// Whether the fields are those of several models, beside one another.
+    is_shared: bool,
     /// The class, where it is an object.
     pub(crate) class: Option<&'v str>,
     /// Whether it is a struct or an object, and not the variables of a file.
@@ -58,6 +71,16 @@ impl<'v> Record<'v> {
         Self { fields, class, stands_alone: true, ..Self::default() }
     }
 
+    /// The same fields, inside another record.
+    pub(super) fn inside(self, outer: &Rc<Record<'v>>) -> Self {
+        Self { outer: Some(Rc::clone(outer)), ..self }
+    }
+
+    /// The same fields, of which some are those of several models.
+    pub(super) fn shared(self) -> Self {
+        Self { is_shared: true, ..self }
+    }
+
     /// Number of models that an object is an array of: each has a record of numbers of its own.
     pub(crate) fn pages(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index).into_iter().find(|(name, _)| folded_name(name) == "data");
@@ -67,24 +90,84 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// The field of the first of these names that there is: as it is written, else without case and underscores.
+    /// The field of the first of these names that there is, which is used from now on: as it is written, else without case and
+    /// underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
-        let exact = names.iter().find_map(|name| self.exact(name));
-        let loose = |name: &&str| self.index().folded.get(&folded_name(name)).copied();
-        exact.or_else(|| names.iter().find_map(loose))
+        let (name, value) = self.find(names)?;
+        self.use_field(name);
+        Some(value)
     }
 
-    /// The field of this very name.
+    /// The same field with its name, which is not used by that.
+    pub(crate) fn find(&self, names: &[&str]) -> Option<Field<'v>> {
+        let exact = names.iter().find_map(|name| self.index().exact.get(name));
+        let loose = |name: &&str| self.index().folded.get(&folded_name(name));
+        exact.or_else(|| names.iter().find_map(loose)).copied()
+    }
+
+    /// The field of this very name, which is used from now on.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
-        self.index().exact.get(name).copied()
+        let (name, value) = *self.index().exact.get(name)?;
+        self.use_field(name);
+        Some(value)
+    }
+
+    /// The field of this very name, which is not used by that.
+    pub(super) fn peek(&self, name: &str) -> Option<&'v Value> {
+        self.index().exact.get(name).map(|(_, value)| *value)
+    }
+
+    /// The value of a field, which is used from now on.
+    pub(super) fn used(&self, (name, value): Field<'v>) -> &'v Value {
+        self.use_field(name);
+        value
+    }
+
+    /// Notes that a field is used.
+    pub(super) fn use_field(&self, name: &'v str) {
+        self.used.borrow_mut().insert(name);
+    }
+
+    /// Whether a field was used.
+    pub(super) fn is_used(&self, name: &str) -> bool {
+        self.used.borrow().contains(name)
+    }
+
+    /// Notes fields of a struct among the fields that were not used: "trim.theta_deg".
+    fn note_unused_inside(&self, names: impl Iterator<Item = String>) {
+        let mut unused = self.unused_inside.borrow_mut();
+        for name in names {
+            if !unused.contains(&name) {
+                unused.push(name);
+            }
+        }
+    }
+
+    /// Names of the fields that were not used. Objects keep much that is nobody's numbers, and list nothing.
+    pub(super) fn unused(&self) -> Vec<String> {
+        if self.class.is_some() {
+            return Vec::new();
+        }
+        let unused = self.fields.iter().filter(|(name, _)| !self.is_used(name)).map(|(name, _)| (*name).to_owned());
+        unused.chain(self.unused_inside.borrow().iter().cloned()).collect()
+    }
+
+    /// The fields that look like delays.
+    pub(super) fn delay_fields(&self) -> &[DelayField<'v>] {
+        self.delays.get_or_init(|| delay_fields(&self.fields))
+    }
+
+    /// This record and those around it, from inside out.
+    pub(super) fn with_outer(&self) -> impl Iterator<Item = &Record<'v>> {
+        std::iter::successors(Some(self), |record| record.outer.as_deref())
     }
 
     fn index(&self) -> &Index<'v> {
         self.index.get_or_init(|| {
             let mut index = Index::default();
             for &(name, value) in &self.fields {
-                index.exact.entry(name).or_insert(value);
-                index.folded.entry(folded_name(name)).or_insert(value);
+                index.exact.entry(name).or_insert((name, value));
+                index.folded.entry(folded_name(name)).or_insert((name, value));
             }
             index
         })
@@ -155,13 +238,13 @@ pub(crate) fn texts_of(value: &Value) -> Option<Vec<String>> {
 }
 
 /// The inputs of a model of `count`.
-pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Vec<ChannelLabel> {
-    labels(record, INPUT_NAMES, INPUT_UNITS, count)
+pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+    labels(record, ChannelSide::Input, count)
 }
 
 /// The outputs of a model of `count`.
-pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Vec<ChannelLabel> {
-    labels(record, OUTPUT_NAMES, OUTPUT_UNITS, count)
+pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
+    labels(record, ChannelSide::Output, count)
 }
 
 /// Names of the states, where there are as many as states.
@@ -170,16 +253,88 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     if names.len() == order && names.iter().all(|name| !name.is_empty()) { names } else { Vec::new() }
 }
 
-/// Labels of `count` channels; a list of another length is none.
-fn labels(record: &Record<'_>, names: &[&str], units: &[&str], count: usize) -> Vec<ChannelLabel> {
-    let list = |keys: &[&str]| record.get(keys).and_then(texts_of).filter(|list| list.len() == count);
-    let (names, units) = (list(names), list(units));
-    let label = |index: usize| {
-        let label = names.as_ref().map(|names| label_of(&names[index])).unwrap_or_default();
-        let unit = units.as_ref().map(|units| units[index].clone()).filter(|unit| !unit.is_empty());
-        ChannelLabel { unit: unit.or(label.unit), ..label }
+/// Labels of the `count` channels of a side: those beside the model, else those of the record around it that fit.
+///
+/// # Errors
+/// A list beside the model that names another number of channels, or one without an order: its channels are never taken by position.
+fn labels(record: &Record<'_>, side: ChannelSide, count: usize) -> Result<Vec<ChannelLabel>, String> {
+    let names = list_of_labels(record, side.of(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
+    let units = list_of_labels(record, side.of(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
+    let names = names.unwrap_or_else(|| vec![String::new(); count]);
+    let mut labels: Vec<ChannelLabel> = names.iter().map(|name| label_of(name)).collect();
+    for (label, unit) in labels.iter_mut().zip(units.into_iter().flatten()) {
+        if !unit.is_empty() {
+            label.unit = Some(unit);
+        }
+    }
+    Ok(labels)
+}
+
+/// The list of names, or of units, that stands under the first of `keys` in a record or around it; empty where one is not said.
+fn list_of_labels(
+    record: &Record<'_>,
+    keys: &[&str],
+    side: ChannelSide,
+    count: usize,
+) -> Result<Option<Vec<String>>, String> {
+    for (level, record) in record.with_outer().enumerate() {
+        let Some((name, value)) = record.find(keys) else { continue };
+        let Some(mut texts) = label_texts(name, value)? else { continue };
+        if count > 1 && texts.len() == 1 && texts[0].split(',').count() == count {
+            texts = texts[0].split(',').map(|text| text.trim().to_owned()).collect();
+        }
+        if texts.iter().all(String::is_empty) {
+            record.use_field(name);
+        } else if texts.len() == count {
+            record.use_field(name);
+            return Ok(Some(texts));
+        } else if level == 0 {
+            return Err(format!(
+                "{name}: {} entries for the {count} {side}s of the model; write one for each, in the order of the matrices",
+                texts.len()
+            ));
+        }
+    }
+    Ok(None)
+}
+
+/// Fields of an object that is a channel.
+const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
+const LABEL_UNITS: &[&str] = &["unit", "units"];
+
+/// The labels in a value, as texts: texts, or objects with a name and a unit, as the channels of a dataset are; nothing where it is
+/// numbers.
+fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
+    if let Some(texts) = texts_of(value) {
+        return Ok(Some(texts));
+    }
+    let mut records: Vec<(&StructArray, usize)> = Vec::new();
+    match value {
+        Value::Struct(of) => records.extend((0..of.shape.iter().product()).map(|index| (of, index))),
+        Value::Cell(cell) if cell.values.iter().all(|value| matches!(value, Value::Array(_))) => return Ok(None),
+        Value::Cell(cell) => {
+            for value in &cell.values {
+                let Value::Struct(of) = value else {
+                    return Err(format!("{field}: expected the names of channels, found {}", value.words()));
+                };
+                records.push((of, 0));
+            }
+        }
+        Value::Array(_) | Value::Text(_) | Value::Object(_) | Value::Opaque { .. } => return Ok(None),
+    }
+    let label = |(records, index): (&StructArray, usize)| {
+        let record = Record::of_struct(records, index, None, 0);
+        let text = |keys: &[&str]| record.get(keys).and_then(texts_of).and_then(|texts| texts.into_iter().next());
+        let (name, unit) = (text(LABEL_NAMES)?, text(LABEL_UNITS).unwrap_or_default());
+        Some(if unit.is_empty() || label_of(&name).unit.is_some() { name } else { format!("{name} [{unit}]") })
     };
-    (0..count).map(label).collect()
+    match records.into_iter().map(label).collect::<Option<Vec<_>>>() {
+        Some(labels) => Ok(Some(labels)),
+        None => Err(format!(
+            "{field}: its channels have no order or no names; write a list of names, or of {{\"name\": …, \"unit\": …}}, in the \
+             order of the matrices"
+        )),
+    }
 }
 
 /// A label as engineers write it: "P", "P [deg/s]", "P (deg/s)".
@@ -197,81 +352,178 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
     ChannelLabel { name: Some(text.to_owned()).filter(|name| !name.is_empty()), unit: None }
 }
 
-/// Sample time and delays; those of MATLAB's discrete-time models are counted in samples.
-pub(super) fn timing_of(record: &Record<'_>, (inputs, outputs): (usize, usize)) -> Result<Timing, String> {
-    let sample_time_s = sample_time_of(record)?;
-    let delay = match record.get(&["Delay"]) {
-        Some(Value::Struct(records)) => Record::of_struct(records, 0, None, 0),
-        _ => Record::default(),
-    };
-    refuse_other_delays(record, &delay)?;
-    let in_samples = sample_time_s.filter(|_| record.get(&["input_delays_s", "output_delays_s"]).is_none());
-    let delays = |name: &str, value: Option<&Value>, count: usize| -> Result<Option<Vec<f64>>, String> {
-        let Some(value) = value else { return Ok(None) };
-        let mut delays = list_of(name, value)?;
-        if delays.len() == 1 {
-            delays = vec![delays[0]; count];
-        }
-        if delays.is_empty() || delays.iter().all(|delay| *delay == 0.0) {
-            return Ok(None);
-        }
-        delays.iter_mut().for_each(|delay| *delay *= in_samples.unwrap_or(1.0));
-        match delays.iter().find(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(*delay)) {
-            Some(delay) => {
-                Err(format!("{name}: expected delays from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*delay)))
-            }
-            None if delays.len() != count => Err(format!("{name}: expected {count} delays, found {}", delays.len())),
-            None => Ok(Some(delays)),
-        }
-    };
-    let input = record.get(&["InputDelay", "input_delays_s"]).or_else(|| delay.get(&["Input"]));
-    let output = record.get(&["OutputDelay", "output_delays_s"]).or_else(|| delay.get(&["Output"]));
-    Ok(Timing {
-        sample_time_s,
-        input_delays_s: delays("input delays", input, inputs)?,
-        output_delays_s: delays("output delays", output, outputs)?,
+/// What beside a model says about its flight condition: read from the page of an array of models that it is, 1 of 1 by itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Page {
+    /// From 0.
+    pub(super) index: usize,
+    pub(super) count: usize,
+}
+
+impl Page {
+    /// That of a model by itself.
+    pub(super) const ONLY: Self = Self { index: 0, count: 1 };
+}
+
+const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
+const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
+const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
+const MASSES: &[&str] = &["mass_kg", "m_kg"];
+/// Structs that hold such facts.
+const FACTS: [&[&str]; 4] = [&["trim"], &["flight_condition"], &["flight_state"], &["condition"]];
+/// A struct of the offsets of the trim, by coordinate.
+const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
+/// What the name of a single offset begins with: `by_roll_deg`.
+const OFFSET: &str = "by_";
+
+/// What stands beside a model, and around it, about its flight condition.
+///
+/// # Errors
+/// A list of another length than there are models, and a number beside the model that is not the one around it.
+pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
+    let condition = fact(record, CONDITIONS, page)?.filter(|id| id.fract() == 0.0 && id.abs() < 1e9);
+    Ok(Facts {
+        condition: condition.map(|id| id as i64),
+        airspeed_kt: fact(record, AIRSPEEDS, page)?,
+        altitude_ft: fact(record, ALTITUDES, page)?,
+        mass_kg: fact(record, MASSES, page)?,
+        name: name_beside(record, page),
+        ..Facts::default()
     })
 }
 
-fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
-    let Some(value) = record.get(&SAMPLE_TIME_NAMES) else { return Ok(None) };
-    match scalar_of(value) {
-        Some(0.0) => Ok(None),
-        Some(sample_time) if sample_time > 0.0 => Ok(Some(sample_time)),
-        Some(sample_time) => Err(format!(
-            "the sample time is {}: a discrete-time model whose sample time is not said cannot be compared; set Ts",
-            number(sample_time)
-        )),
-        None if array_of(value).is_some_and(|array| array.is_empty()) => Ok(None),
-        None => Err(format!("the sample time: expected a number, found {}", value.words())),
-    }
-}
-
-/// Delays between single channels, and inside the model, are not what a gain and a delay of each channel can have.
-fn refuse_other_delays(record: &Record<'_>, delay: &Record<'_>) -> Result<(), String> {
-    let found = [
-        ("internal", record.get(&["InternalDelay"]).or_else(|| delay.get(&["Internal"]))),
-        ("input-output", record.get(&["IODelay"]).or_else(|| delay.get(&["IO"]))),
-    ];
-    for (kind, value) in found {
-        if value.and_then(array_of).is_some_and(|array| array.re.iter().any(|delay| *delay != 0.0)) {
-            return Err(format!("{kind} delays cannot be taken; absorb them first: sys = pade(sys, 3)"));
+/// A number of the flight condition, wherever it stands beside a model or around it.
+fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+    let mut known: Option<f64> = None;
+    for (level, record) in record.with_outer().enumerate() {
+        let page = if level == 0 { page } else { Page::ONLY };
+        for value in [figure(record, names, page)?, figure_inside(record, names)?].into_iter().flatten() {
+            match known {
+                Some(known) if known != value => {
+                    return Err(format!(
+                        "{}: {} and {} are said of one model; correct one",
+                        names[0],
+                        number(known),
+                        number(value)
+                    ));
+                }
+                _ => known = Some(value),
+            }
         }
     }
-    Ok(())
+    Ok(known)
 }
 
-/// What stands beside a model about its flight condition.
-pub(super) fn facts_of(record: &Record<'_>) -> Facts {
-    let figure = |names: &[&str]| record.get(names).and_then(scalar_of);
-    let condition = figure(&["condition", "condition_id", "fc"]).filter(|id| id.fract() == 0.0 && id.abs() < 1e9);
-    Facts {
-        condition: condition.map(|id| id as i64),
-        airspeed_kt: figure(&["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"]),
-        altitude_ft: figure(&["altitude_ft", "alt_ft", "h_ft"]),
-        mass_kg: figure(&["mass_kg", "m_kg"]),
-        records: Vec::new(),
+/// The number of a field, or that of the page in a list.
+fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
+    let Some((name, value)) = record.find(names) else { return Ok(None) };
+    let Some(array) = array_of(value) else { return Ok(None) };
+    let value = match array.re.as_slice() {
+        [value] => *value,
+        values if page.count > 1 && values.len() == page.count => values[page.index],
+        [] => return Ok(None),
+        _ if page.count == 1 => return Ok(None),
+        values => {
+            return Err(format!("{name}: {} numbers for {} models; write one for each", values.len(), page.count));
+        }
+    };
+    if !value.is_finite() {
+        return Ok(None);
     }
+    record.use_field(name);
+    Ok(Some(value))
+}
+
+/// The number of a field of a struct that describes the flight condition: `trim.airspeed_kt`, `condition.id`.
+fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
+    for keys in FACTS {
+        let Some((key, Value::Struct(records))) = record.find(keys) else { continue };
+        let inner = Record::of_struct(records, 0, None, 0);
+        let value = match figure(&inner, names, Page::ONLY)? {
+            None if names == CONDITIONS && keys != ["trim"] => figure(&inner, &["id"], Page::ONLY)?,
+            value => value,
+        };
+        let is_new = !record.is_used(key);
+        if value.is_some() {
+            record.use_field(key);
+        }
+        if value.is_some() && is_new {
+            let is_fact =
+                |name: &str| [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS].concat().contains(&name) || name == "id";
+            let others = inner.fields().filter(|(name, _)| !is_fact(name));
+            record.note_unused_inside(others.map(|(name, _)| format!("{key}.{name}")));
+        }
+        if value.is_some() {
+            return Ok(value);
+        }
+    }
+    Ok(None)
+}
+
+/// The name beside a model; a name beside several models is that of none.
+fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
+    let (key, value) = record.find(&["name"]).filter(|_| !record.is_shared)?;
+    let texts = texts_of(value)?;
+    let name = match texts.as_slice() {
+        [name] if page.count == 1 => name,
+        names if page.count > 1 && names.len() == page.count => &names[page.index],
+        _ => return None,
+    };
+    if name.is_empty() {
+        return None;
+    }
+    record.use_field(key);
+    Some(name.clone())
+}
+
+/// What a model is, as far as the fields beside it and around it say: its role, the offsets of its trim, its method.
+pub(super) fn origin_of(record: &Record<'_>) -> Origin {
+    let text = |names: &[&str]| -> Option<String> {
+        for record in record.with_outer() {
+            let Some((name, value)) = record.find(names) else { continue };
+            if let Some([text]) = texts_of(value).as_deref() {
+                record.use_field(name);
+                return Some(text.clone());
+            }
+        }
+        None
+    };
+    let role = text(&["role"]).and_then(|word| RowRole::of(&word.to_lowercase()));
+    // Objects of identified models; of others nothing is known.
+    let is_identified = record.class.is_some_and(|class| class.starts_with("id"));
+    let perturbation = Some(offsets_of(record)).filter(|offsets| !offsets.is_empty());
+    match role {
+        Some(RowRole::Nominal) => Origin::Nominal { perturbation },
+        Some(RowRole::Perturbed) => Origin::Perturbed { perturbation },
+        Some(RowRole::Identified) => Origin::Identified { method: text(&["method"]), order: None },
+        None if is_identified => Origin::Identified { method: text(&["method"]), order: None },
+        None => Origin::Perturbed { perturbation },
+    }
+}
+
+/// The offsets of the trim, by coordinate.
+fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
+    let mut offsets = BTreeMap::new();
+    for record in record.with_outer() {
+        for (name, value) in record.fields() {
+            if let (Some(coordinate), Some(offset)) = (name.strip_prefix(OFFSET), scalar_of(value)) {
+                record.use_field(name);
+                offsets.entry(coordinate.to_owned()).or_insert(offset);
+            }
+        }
+        let Some((key, Value::Struct(records))) = record.find(OFFSETS) else { continue };
+        let inner = Record::of_struct(records, 0, None, 0);
+        record.use_field(key);
+        for (coordinate, value) in inner.fields() {
+            match scalar_of(value) {
+                Some(offset) => {
+                    offsets.entry(coordinate.to_owned()).or_insert(offset);
+                }
+                None => record.note_unused_inside(std::iter::once(format!("{key}.{coordinate}"))),
+            }
+        }
+    }
+    offsets
 }
 
 // Numbers out of values.

@@ -2,21 +2,22 @@
 
 use gdcm_core::assembly::FoundModel;
 use gdcm_core::dataset::limits::MOST_STATES;
-use gdcm_core::dataset::{ModelDraft, Origin, Provenance, Timing};
+use gdcm_core::dataset::{ModelDraft, Provenance, Timing};
 use gdcm_core::units::number;
 use nalgebra::{Complex, DMatrix};
 
 use crate::models_file::bare_draft;
+use crate::recognise::delays::timing_of;
 use crate::recognise::record::{
-    Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, outputs_of, page_of, pages_of,
-    states_of, timing_of,
+    Page, Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, origin_of, outputs_of, page_of,
+    pages_of, states_of,
 };
 use crate::variables::{CellArray, Value};
 
 /// Whether fields are those of a state-space model: the matrices A and B, by their very names, large or small.
 pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     let has = |large: &str, small: &str| {
-        let value = record.exact(large).or_else(|| record.exact(small).filter(|_| record.stands_alone));
+        let value = record.peek(large).or_else(|| record.peek(small).filter(|_| record.stands_alone));
         value.and_then(array_of).is_some()
     };
     has("A", "a") && has("B", "b") && has("C", "c")
@@ -27,7 +28,7 @@ pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: boo
     let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small)).and_then(array_of);
     let (Some(a), Some(b), Some(c)) = (get("A", "a"), get("B", "b"), get("C", "c")) else { return Vec::new() };
     if [a, b, c].iter().all(|array| array.shape.len() < 3) {
-        return vec![one(record, variable, &|name, value| matrix_of(name, value))];
+        return vec![one(record, variable, Page::ONLY, &|name, value| matrix_of(name, value))];
     }
     // Which index counts the models shows where the others fit one another.
     let fits = |first: bool| {
@@ -43,7 +44,7 @@ pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: boo
     let count = pages_of(a, first).0;
     let page = |page: usize| {
         let place = if first { format!("[{page},:,:]") } else { format!("(:,:,{})", page + 1) };
-        one(record, &format!("{variable}{place}"), &|name, value| match array_of(value) {
+        one(record, &format!("{variable}{place}"), Page { index: page, count }, &|name, value| match array_of(value) {
             // A matrix that all of them share.
             Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
             Some(array) if page < pages_of(array, first).0 => page_of(name, array, page, first),
@@ -55,7 +56,7 @@ pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: boo
 
 type MatrixOf<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
 
-fn one(record: &Record<'_>, variable: &str, matrix: MatrixOf<'_>) -> Result<FoundModel, String> {
+fn one(record: &Record<'_>, variable: &str, page: Page, matrix: MatrixOf<'_>) -> Result<FoundModel, String> {
     let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small));
     let read = |name: &str, small: &str| get(name, small).map(|value| matrix(name, value)).transpose();
     let missing = |name: &str| format!("matrix {name} is missing");
@@ -79,8 +80,9 @@ fn one(record: &Record<'_>, variable: &str, matrix: MatrixOf<'_>) -> Result<Foun
     };
     let d = if d.len() == 1 && d[0] == 0.0 { DMatrix::zeros(c.nrows(), b.ncols()) } else { d };
     check_shapes(&a, &b, &c, &d)?;
-    let timing = timing_of(record, (b.ncols(), c.nrows()))?;
-    let mut model = found(record, variable, [a, b, c, d], timing);
+    let (timing, of_timing) = timing_of(record, c.nrows(), b.ncols())?;
+    let mut model = found(record, variable, page, [a, b, c, d], timing)?;
+    notes.extend(of_timing);
     model.notes = notes;
     Ok(model)
 }
@@ -89,13 +91,14 @@ fn one(record: &Record<'_>, variable: &str, matrix: MatrixOf<'_>) -> Result<Foun
 pub(super) fn found(
     record: &Record<'_>,
     variable: &str,
+    page: Page,
     [a, b, c, d]: [DMatrix<f64>; 4],
     timing: Timing,
-) -> FoundModel {
-    let (inputs, outputs) = (inputs_of(record, b.ncols()), outputs_of(record, c.nrows()));
+) -> Result<FoundModel, String> {
+    let (inputs, outputs) = (inputs_of(record, b.ncols())?, outputs_of(record, c.nrows())?);
     let states = states_of(record, a.nrows());
     let source = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
-    FoundModel {
+    Ok(FoundModel {
         draft: ModelDraft {
             matrices: [a, b, c, d].map(Some),
             timing,
@@ -105,18 +108,9 @@ pub(super) fn found(
         },
         inputs,
         outputs,
-        facts: facts_of(record),
+        facts: facts_of(record, page)?,
         notes: Vec::new(),
-    }
-}
-
-/// Classes whose objects are identified; of others nothing is known yet.
-pub(super) fn origin_of(record: &Record<'_>) -> Origin {
-    let identified = record.class.is_some_and(|class| class.starts_with("id"));
-    match identified {
-        true => Origin::Identified { method: None, order: None },
-        false => Origin::Perturbed { perturbation: None },
-    }
+    })
 }
 
 /// Refuses more of something than a model of a dataset can have of states, before there is a matrix of so many rows and columns.
@@ -182,12 +176,14 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
 }
 
 fn polynomials<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value)> {
-    let numerator = record.get(&["num", "Numerator"])?;
-    Some((numerator, record.get(&["den", "Denominator"])?))
+    let (numerator, denominator) = (record.find(&["num", "Numerator"])?, record.find(&["den", "Denominator"])?);
+    Some((record.used(numerator), record.used(denominator)))
 }
 
 fn factors<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value, &'v Value)> {
-    Some((record.get(&["z", "Zeros"])?, record.get(&["p", "Poles"])?, record.get(&["k", "Gain"])?))
+    let (zeros, poles) = (record.find(&["z", "Zeros"])?, record.find(&["p", "Poles"])?);
+    let gains = record.find(&["k", "Gain"])?;
+    Some((record.used(zeros), record.used(poles), record.used(gains)))
 }
 
 /// One response as a fraction of polynomials, highest power first; the denominator begins with 1.
@@ -260,8 +256,9 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
         }
         start += n;
     }
-    let timing = timing_of(record, (inputs, outputs))?;
-    let mut model = found(record, variable, [a, b, c, d], timing);
+    let (timing, of_timing) = timing_of(record, outputs, inputs)?;
+    let mut model = found(record, variable, Page::ONLY, [a, b, c, d], timing)?;
+    model.notes.extend(of_timing);
     model.notes.push("transfer functions, each realised by itself".to_owned());
     Ok(model)
 }

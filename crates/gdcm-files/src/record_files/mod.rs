@@ -116,7 +116,7 @@ impl FoundRecords {
                 }
             }
             Contents::Logs(logs) => logs.into_iter().for_each(|log| self.add(log.of_file(name, &sha256))),
-            Contents::Dataset(_) | Contents::Models(_) => {
+            Contents::Dataset(..) | Contents::Models(..) => {
                 self.ignored.push(format!("{name}: a dataset or models, not a record"));
             }
             Contents::Archive { variables, files, ignored } => {

@@ -174,7 +174,7 @@ pub(super) fn add_models(page: &mut Page, study: &Study) {
 }
 
 fn source_cells(source: &Provenance) -> [String; 5] {
-    let Provenance { file, sha256, variable, made, note, records } = source;
+    let Provenance { file, sha256, variable, made, note, records, .. } = source;
     let records = Some(format!("records {}", records.join(", "))).filter(|_| !records.is_empty());
     let variable = variable.clone().or(records);
     [file, sha256, &variable, made, note].map(|part| part.clone().unwrap_or_default())

@@ -23,6 +23,12 @@ pub(super) enum KnownUnit {
     Degree,
     Radian,
     Percent,
+    /// The coherence itself, γ, of which γ² is the square.
+    Gamma,
+    /// The coherence squared, γ².
+    GammaSquared,
+    /// Radians or revolutions per second: `rps` leaves it open.
+    Rps,
     /// Another one: of a magnitude, a real or an imaginary part.
     Other,
 }
@@ -39,10 +45,10 @@ pub(super) struct ColumnMeaning {
 
 /// Words in the names of columns. A column is the first kind of which its name has a word: "phase error" is an error.
 const WORDS: [(Quantity, &[&str]); 7] = [
-    (Quantity::Error, &["error", "err", "std", "sigma", "uncertainty", "eps"]),
+    (Quantity::Error, &["error", "err", "std", "sd", "stdev", "stddev", "deviation", "sigma", "uncertainty", "eps"]),
     (
         Quantity::Coherence,
-        &["coherence", "coh", "gamma", "gamma2", "gam", "gam2", "gammasq", "γ", "γ²", "γ2", "cxy", "gxy"],
+        &["coherence", "coher", "coh", "gamma", "gamma2", "gam", "gam2", "gammasq", "γ", "γ²", "γ2", "cxy"],
     ),
     (Quantity::Magnitude, &["magnitude", "mag", "amplitude", "ampl", "amp", "gain", "abs", "modulus"]),
     (Quantity::Phase, &["phase", "phas", "phs", "pha", "ph", "angle", "arg"]),
@@ -58,7 +64,7 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad_s", KnownUnit::RadianPerSecond),
     ("rad_sec", KnownUnit::RadianPerSecond),
     ("rads", KnownUnit::RadianPerSecond),
-    ("rps", KnownUnit::RadianPerSecond),
+    ("rps", KnownUnit::Rps),
     ("hz", KnownUnit::Hertz),
     ("db", KnownUnit::Decibel),
     ("deg", KnownUnit::Degree),
@@ -77,18 +83,16 @@ impl ColumnMeaning {
         };
         let lower = name.trim().to_lowercase();
         let sole = match lower.as_str() {
-            "w" if !matches!(unit, Some(KnownUnit::Other)) => Some((Quantity::Frequency, KnownUnit::RadianPerSecond)),
-            "f" if !matches!(unit, Some(KnownUnit::Other)) => Some((Quantity::Frequency, KnownUnit::Hertz)),
+            "w" if !matches!(unit, Some(KnownUnit::Other)) => {
+                Some((Quantity::Frequency, Some(KnownUnit::RadianPerSecond)))
+            }
+            // In tables of frequencies f is in Hz as often as in rad/s: its unit is asked for.
+            "f" if !matches!(unit, Some(KnownUnit::Other)) => Some((Quantity::Frequency, None)),
             _ => None,
         };
         if let Some((quantity, usual)) = sole {
             let reason = format!("its name is \"{name}\"");
-            return Self {
-                quantity: Some(quantity),
-                unit: unit.or(Some(usual)),
-                label: ResponseLabel::default(),
-                reason,
-            };
+            return Self { quantity: Some(quantity), unit: unit.or(usual), label: ResponseLabel::default(), reason };
         }
         Self::from_words(name, unit)
     }
@@ -102,8 +106,7 @@ impl ColumnMeaning {
             if let Some((_, word)) = words.iter().find(|(_, word)| is(&word.to_lowercase())) {
                 let reason = format!("its name says {}", word.to_lowercase());
                 let label = without(name, &words, known);
-                let usual = matches!(word.to_lowercase().as_str(), "omega" | "om" | "ω");
-                let unit = unit.or(usual.then_some(KnownUnit::RadianPerSecond));
+                let unit = unit.or_else(|| usual_unit(quantity, word, &words));
                 return Self { quantity: Some(quantity), unit, label: ResponseLabel::of(&label), reason };
             }
         }
@@ -123,8 +126,29 @@ impl ColumnMeaning {
     }
 }
 
+/// Words of magnitudes that are no levels in decibels.
+const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
+
+/// The unit that the words of a name say by themselves; `word` is the one that says the quantity.
+fn usual_unit(quantity: Quantity, word: &str, words: &[(usize, &str)]) -> Option<KnownUnit> {
+    let word = word.to_lowercase();
+    match quantity {
+        Quantity::Frequency if matches!(word.as_str(), "omega" | "om" | "ω") => Some(KnownUnit::RadianPerSecond),
+        Quantity::Magnitude if words.iter().any(|(_, word)| ABSOLUTE.contains(&word.to_lowercase().as_str())) => {
+            Some(KnownUnit::Other)
+        }
+        // Programs name both γ and γ² gamma.
+        Quantity::Coherence if !matches!(word.as_str(), "gamma" | "gam" | "γ") => Some(KnownUnit::GammaSquared),
+        _ => None,
+    }
+}
+
 fn known_unit(unit: &str) -> KnownUnit {
     match unit.trim().to_lowercase().replace([' ', '.'], "").as_str() {
+        "gamma" | "γ" => return KnownUnit::Gamma,
+        "gamma2" | "gamma^2" | "γ²" | "γ2" | "γ^2" => return KnownUnit::GammaSquared,
+        "rps" => return KnownUnit::Rps,
+        "rev/s" | "rev/sec" => return KnownUnit::Hertz,
         // Of a column of frequencies, that is.
         "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
         "1/sec" => return KnownUnit::Hertz,
@@ -277,10 +301,16 @@ mod column_meaning_tests {
             assert_eq!(of(name, unit), radians, "{name}");
         }
         let hertz = is(Quantity::Frequency, Some(KnownUnit::Hertz), "", "");
-        for (name, unit) in [("f", ""), ("freqHz", ""), ("Freq", "Hz"), ("f", "Hz")] {
+        for (name, unit) in [("f_Hz", ""), ("freqHz", ""), ("Freq", "Hz"), ("f", "Hz"), ("f", "rev/s")] {
             assert_eq!(of(name, unit), hertz, "{name}");
         }
-        assert_eq!(of("freq", ""), is(Quantity::Frequency, None, "", ""));
+        for name in ["f", "freq"] {
+            assert_eq!(of(name, ""), is(Quantity::Frequency, None, "", ""), "{name}");
+        }
+        let open = is(Quantity::Frequency, Some(KnownUnit::Rps), "", "");
+        for (name, unit) in [("freq_rps", ""), ("omega", "rps"), ("f", "rps")] {
+            assert_eq!(of(name, unit), open, "{name}");
+        }
         assert_eq!(of("w", "m/s").0, None);
     }
 
@@ -297,7 +327,19 @@ mod column_meaning_tests {
         assert_eq!(of("|P/LAT|", ""), is(Quantity::Magnitude, None, "P", "LAT"));
         assert_eq!(of("|H|", "dB"), is(Quantity::Magnitude, decibel, "", ""), "the file says whose it is");
         assert_eq!(of("ph", "deg"), is(Quantity::Phase, Some(KnownUnit::Degree), "", ""));
-        assert_eq!(of("Gamma2", ""), is(Quantity::Coherence, None, "", ""));
+        let squared = is(Quantity::Coherence, Some(KnownUnit::GammaSquared), "", "");
+        for (name, unit) in [("Gamma2", ""), ("COHER", ""), ("γ²", ""), ("coherence", ""), ("gamma", "gamma2")] {
+            assert_eq!(of(name, unit), squared, "{name}");
+        }
+        assert_eq!(of("gamma", ""), is(Quantity::Coherence, None, "", ""), "γ or γ²");
+        assert_eq!(of("gamma", "gamma"), is(Quantity::Coherence, Some(KnownUnit::Gamma), "", ""));
+        assert_eq!(of("gain Q/LON", ""), is(Quantity::Magnitude, None, "Q", "LON"), "dB or a ratio");
+        for name in ["mag_abs", "abs", "gain_abs", "|H| abs"] {
+            assert_eq!(of(name, "").1, Some(KnownUnit::Other), "{name}");
+        }
+        for (name, unit) in [("sd_mag_dB", KnownUnit::Decibel), ("sd_phase_deg", KnownUnit::Degree)] {
+            assert_eq!((of(name, "").0, of(name, "").1), (Some(Quantity::Error), Some(unit)), "{name}");
+        }
         assert_eq!(of("phase error", "deg"), is(Quantity::Error, Some(KnownUnit::Degree), "phase", ""));
     }
 

@@ -15,6 +15,8 @@ pub(crate) struct FrequencyColumns {
     pub(crate) responses: Vec<RecognisedResponse>,
     /// Each decision and its reason, in words.
     pub(crate) notes: Vec<String>,
+    /// Names of the columns that are not used, by number where they have none.
+    pub(crate) unused: Vec<String>,
 }
 
 /// A frequency response among the columns of a table.
@@ -25,8 +27,24 @@ pub(crate) struct RecognisedResponse {
     /// The input, where the names say it.
     pub(crate) input: Option<String>,
     parts: ResponseParts,
-    /// The column, from 0, of its coherence, and what makes it a part of 1.
-    pub(crate) coherence: Option<(usize, f64)>,
+    /// The column of its coherence.
+    pub(crate) coherence: Option<CoherenceColumn>,
+}
+
+/// A column of coherence, and how its numbers become γ² as a part of 1: multiplied by the factor, then squared where they are γ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CoherenceColumn {
+    /// The column, from 0.
+    column: usize,
+    factor: f64,
+    is_gamma: bool,
+}
+
+impl CoherenceColumn {
+    fn squared(self, value: f64) -> f64 {
+        let part = self.factor * value;
+        if self.is_gamma { part * part } else { part }
+    }
 }
 
 /// The two columns, from 0, that are a complex number.
@@ -71,7 +89,8 @@ impl FrequencyColumns {
         let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
         let meaning = |index: usize| ColumnMeaning::of(table.name(index).unwrap_or_default(), unit(index));
         let meanings: Vec<ColumnMeaning> = (0..table.columns.len()).map(meaning).collect();
-        let mut reading = Recognition { table, meanings: &meanings, notes: Vec::new(), unsaid: Vec::new() };
+        let mut reading =
+            Recognition { table, meanings: &meanings, notes: Vec::new(), unsaid: Vec::new(), unused: Vec::new() };
         let frequency = reading.frequency()?;
         let responses = reading.responses();
         if !reading.unsaid.is_empty() {
@@ -86,8 +105,8 @@ impl FrequencyColumns {
         if responses.is_empty() {
             return Err(unrecognised("no magnitude with a phase and no real part with an imaginary part"));
         }
-        let notes = reading.notes;
-        let mut found = Self { frequency, responses, notes };
+        let Recognition { notes, unused, .. } = reading;
+        let mut found = Self { frequency, responses, notes, unused };
         if found.falls(table) {
             found.notes.push("the frequencies fall: taken from the last line to the first".to_owned());
         }
@@ -157,6 +176,8 @@ struct Recognition<'t> {
     notes: Vec<String>,
     /// Columns whose unit is not said, where their numbers allow several.
     unsaid: Vec<UnsaidUnit>,
+    /// Names of the columns that are not used.
+    unused: Vec<String>,
 }
 
 /// Columns that belong to one response, by quantity.
@@ -203,6 +224,10 @@ impl Recognition<'_> {
     fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
+            if let Some(column) = group.column(Quantity::Error) {
+                self.note(column, "a standard deviation, which is not used", "");
+                self.unused.push(name_of(self.table, column));
+            }
             let rectangular = group.column(Quantity::Real).zip(group.column(Quantity::Imaginary));
             let polar = group.column(Quantity::Magnitude).zip(group.column(Quantity::Phase));
             let parts = match (rectangular, polar) {
@@ -224,8 +249,11 @@ impl Recognition<'_> {
                 }
                 (None, None) => {
                     let halves = group.columns.iter().filter(|(quantity, _)| *quantity != Quantity::Error);
-                    let left_out = halves.map(|(_, column)| place(self.table, *column));
-                    self.notes.extend(left_out.map(|place| format!("{place} is left out: its other half is missing")));
+                    for (_, column) in halves {
+                        let place = place(self.table, *column);
+                        self.notes.push(format!("{place} is left out: its other half is missing"));
+                        self.unused.push(name_of(self.table, *column));
+                    }
                     continue;
                 }
             };
@@ -236,19 +264,26 @@ impl Recognition<'_> {
         responses
     }
 
-    /// A column of coherence, and what makes it a part of 1: percent where its unit says so, or where no number of it can be a part.
-    fn coherence(&mut self, column: usize) -> (usize, f64) {
+    /// A column of coherence: in percent where its unit says so, or where no number of it can be a part of 1. Whether a column called
+    /// gamma is γ or γ² is asked for.
+    fn coherence(&mut self, column: usize) -> CoherenceColumn {
         /// Rounding and noise leave coherence not much above 1.
         const MOST: f64 = 1.5;
-        let said = self.meanings[column].unit == Some(KnownUnit::Percent);
+        let unit = self.meanings[column].unit;
+        if unit.is_none() {
+            self.unsaid.push(UnsaidUnit { column, units: ["gamma2", "gamma"] });
+        }
+        let is_gamma = unit == Some(KnownUnit::Gamma);
+        let said = unit == Some(KnownUnit::Percent);
         let above = self.table.columns[column].iter().any(|value| *value > MOST);
         let (what, why, factor) = match (said, above) {
             (true, _) => ("coherence in percent", ", its unit says %", 0.01),
             (false, true) => ("coherence in percent", ", some of its numbers are above 1", 0.01),
             (false, false) => ("coherence", "", 1.0),
         };
+        let why = if is_gamma { ", its unit says γ: squared" } else { why };
         self.note(column, what, why);
-        (column, factor)
+        CoherenceColumn { column, factor, is_gamma }
     }
 
     fn groups(&mut self) -> Vec<Group> {
@@ -257,6 +292,7 @@ impl Recognition<'_> {
             let Some(quantity) = meaning.quantity else {
                 let place = place(self.table, column);
                 self.notes.push(format!("{place} is left out: its name says nothing known"));
+                self.unused.push(name_of(self.table, column));
                 continue;
             };
             if quantity == Quantity::Frequency {
@@ -286,7 +322,9 @@ impl Recognition<'_> {
             unsaid.push(UnsaidUnit { column, units });
             false
         };
-        let is_negative = self.table.columns[magnitude].iter().any(|value| *value < 0.0);
+        // A gain may be a level in dB, or a ratio with a sign.
+        let is_gain = self.table.name(magnitude).is_some_and(|name| name.to_lowercase().contains("gain"));
+        let is_negative = !is_gain && self.table.columns[magnitude].iter().any(|value| *value < 0.0);
         let (in_db, said) = match self.meanings[magnitude].unit {
             Some(KnownUnit::Decibel) => (true, "its unit says dB"),
             Some(_) => (false, "its unit is not dB"),
@@ -324,6 +362,11 @@ impl Recognition<'_> {
     }
 }
 
+/// The name of a column, or "column 5" where it has none.
+fn name_of(table: &TextTable, column: usize) -> String {
+    table.name(column).map_or_else(|| format!("column {}", column + 1), str::to_owned)
+}
+
 /// A column in words: its number from 1, and its name.
 fn place(table: &TextTable, column: usize) -> String {
     match table.name(column) {
@@ -335,7 +378,7 @@ fn place(table: &TextTable, column: usize) -> String {
 /// The points of a response; rows in which it has no numbers at all, as others in the table do, are left out.
 fn points(table: &TextTable, response: &RecognisedResponse, omega: &[f64]) -> Result<ResponsePoints, VariableFault> {
     let (first, second) = response.parts.columns();
-    let coherence = response.coherence.map(|(index, factor)| (&table.columns[index], factor));
+    let coherence = response.coherence;
     let mut points = ResponsePoints {
         omega: Vec::with_capacity(omega.len()),
         re: Vec::with_capacity(omega.len()),
@@ -360,8 +403,8 @@ fn points(table: &TextTable, response: &RecognisedResponse, omega: &[f64]) -> Re
         points.omega.push(omega);
         points.re.push(re);
         points.im.push(im);
-        if let (Some(all), Some((values, factor))) = (&mut points.coherence, coherence) {
-            all.push(factor * values[row]);
+        if let (Some(all), Some(of)) = (&mut points.coherence, coherence) {
+            all.push(of.squared(table.columns[of.column][row]));
         }
     }
     Ok(points)
@@ -406,6 +449,16 @@ mod frequency_columns_tests {
         FrequencyColumns::recognise(&table).unwrap_err().fault.to_string()
     }
 
+    /// γ² in this column, as a part of 1.
+    fn squared(column: usize) -> Option<CoherenceColumn> {
+        Some(CoherenceColumn { column, factor: 1.0, is_gamma: false })
+    }
+
+    fn asked(text: &str) -> Vec<UnsaidUnit> {
+        let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
+        FrequencyColumns::recognise(&table).unwrap_err().unsaid
+    }
+
     const POLAR: ResponseParts = ResponseParts::Polar { magnitude: 1, in_db: true, phase: 2, in_degrees: true };
 
     #[test]
@@ -414,7 +467,7 @@ mod frequency_columns_tests {
         assert_eq!(found.frequency, (0, 1.0));
         let [response] = found.responses.as_slice() else { panic!("one response") };
         assert_eq!((response.output.as_deref(), response.input.as_deref()), (Some("P"), Some("LAT")));
-        assert_eq!((response.parts, response.coherence), (POLAR, Some((3, 1.0))));
+        assert_eq!((response.parts, response.coherence), (POLAR, squared(3)));
         assert_eq!(
             found.notes[0],
             "column 1 (\"omega\") is read as the frequency in rad/s: its name says omega, its unit says rad/s"
@@ -427,7 +480,7 @@ mod frequency_columns_tests {
 
     #[test]
     fn several_responses_stand_side_by_side() {
-        let found = recognise("f,P/LAT re,P/LAT im,re(PED->R),im(PED->R)\n1,2,3,4,5\n2,3,4,5,6\n");
+        let found = recognise("f_Hz,P/LAT re,P/LAT im,re(PED->R),im(PED->R)\n1,2,3,4,5\n2,3,4,5,6\n");
         assert_eq!(found.frequency, (0, TAU));
         let names: Vec<_> = found.responses.iter().map(|r| (r.output.as_deref(), r.input.as_deref())).collect();
         assert_eq!(names, [(Some("P"), Some("LAT")), (Some("R"), Some("PED"))]);
@@ -439,8 +492,38 @@ mod frequency_columns_tests {
         let text = "FREQUENCY(RAD/S) MAGNITUDE(DB) PHASE(DEG) COHERENCE ERROR REAL IMAG\n 1 0 -90 .9 .1 0 -1\n 2 0 180 .9 .1 -1 0\n";
         let found = recognise(text);
         assert_eq!(found.responses[0].parts, ResponseParts::Rectangular { re: 5, im: 6 });
-        assert_eq!(found.responses[0].coherence, Some((3, 1.0)));
+        assert_eq!(found.responses[0].coherence, squared(3));
         assert!(found.notes.iter().any(|note| note.contains("magnitude and phase in columns 2 and 3 agree")));
+    }
+
+    #[test]
+    fn a_bare_f_rps_a_gain_and_gamma_are_asked_for_and_answered_by_a_unit() {
+        let one = |column, units| vec![UnsaidUnit { column, units }];
+        assert_eq!(asked("f,re,im\n1,1,2\n2,3,4\n"), one(0, ["rad/s", "Hz"]));
+        assert_eq!(asked("freq_rps,re,im\n1,1,2\n2,3,4\n"), one(0, ["rad/s", "Hz"]));
+        assert_eq!(asked("w,gain,phase_deg\n1,-3,-90\n2,-6,-100\n"), one(1, ["dB", "abs"]));
+        assert_eq!(asked("w,re,im,gamma\n1,1,2,0.9\n2,3,4,0.8\n"), one(3, ["gamma2", "gamma"]));
+        let coherence = |unit: &str| {
+            let text = format!("w,re,im,gamma [{unit}]\n1,1,2,0.9\n2,3,4,0.8\n");
+            let table = read_table(&text, &ReadingBudget::new(1 << 20)).unwrap();
+            let found = FrequencyColumns::recognise(&table).unwrap();
+            found.values(&table).unwrap().remove(0).coherence.unwrap()
+        };
+        assert_eq!(coherence("gamma2"), [0.9, 0.8]);
+        assert_eq!(coherence("gamma"), [0.9 * 0.9, 0.8 * 0.8]);
+    }
+
+    #[test]
+    fn standard_deviations_are_no_magnitude_and_no_phase_and_what_is_not_used_is_listed() {
+        let found = recognise(
+            "w,mag_abs,phase_deg,COHER,sd_mag_dB,sd_phase_deg,torque\n1,0.5,-90,0.9,0.1,1,7\n2,0.4,-99,0.8,0.1,1,8\n",
+        );
+        let parts = ResponseParts::Polar { magnitude: 1, in_db: false, phase: 2, in_degrees: true };
+        let [response] = found.responses.as_slice() else { panic!("one response") };
+        assert_eq!((response.parts, response.coherence), (parts, squared(3)));
+        let mut unused = found.unused;
+        unused.sort();
+        assert_eq!(unused, ["sd_mag_dB", "sd_phase_deg", "torque"]);
     }
 
     #[test]

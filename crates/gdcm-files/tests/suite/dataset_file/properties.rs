@@ -93,14 +93,14 @@ fn measured(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
     let values = move || prop::collection::vec(numbers(), 3 * p * m);
     let coherence = prop::option::of(prop::collection::vec(0.0..=1.0_f64, 3 * p * m));
     let band = prop::option::of((0.0..5.0_f64, 5.0..1e3_f64));
-    (values(), values(), coherence, band, prop::option::of(numbers())).prop_map(
+    (values(), values(), coherence, band, prop::option::of(1e-6..=1e6_f64)).prop_map(
         move |(re, im, coherence, band, window_s)| {
             let table = |values: &[f64]| {
                 PairTable::from_fn(p, m, |Pair { output, input }| values[3 * (output * m + input)..][..3].to_vec())
             };
             let coherence = coherence.as_deref().map(table);
             let response = MeasuredResponse::new(vec![0.1, 1.0, 1e300], &table(&re), &table(&im), coherence).unwrap();
-            let response = response.with_estimate(Estimate { averages: window_s, window_s });
+            let response = response.with_estimate(Estimate { averages: window_s, window_s }).unwrap();
             Dynamics::Measured(match band {
                 Some((low, high)) => response.with_valid_bands(PairTable::filled(p, m, [low, high])).unwrap(),
                 None => response,

@@ -250,3 +250,35 @@ fn a_valid_band_that_cannot_be_is_named() {
         assert_refused(|file| file.pointer_mut(measured).unwrap()["valid_band_rad_s"] = value, &[words]);
     }
 }
+
+#[test]
+fn averages_and_windows_have_the_limits_that_the_options_have() {
+    for (key, least, greatest) in [("averages", 1e-6, 1e6), ("window_s", 1e-6, 1e6)] {
+        for value in [-1.0, 0.0, 0.9 * least, 1.1 * greatest, 1e300] {
+            assert_refused(
+                |file| file["conditions"][0]["identified_models"][1]["frequency_response"][key] = json!(value),
+                &[
+                    "condition 7",
+                    "\"measured\"",
+                    "measured response",
+                    &format!("{key}: expected a number from 0.000001 to 1000000"),
+                ],
+            );
+        }
+        let within = small(|file| {
+            file["conditions"][0]["identified_models"][1]["frequency_response"][key] = json!(greatest);
+        });
+        assert!(load(&within).is_ok());
+    }
+}
+
+#[test]
+fn the_schema_says_the_limits_of_averages_and_windows() {
+    use gdcm_core::dataset::limits::{AVERAGES, WINDOW_S};
+    let path = crate::program_folder().join("assets/gdcm-dataset.schema.json");
+    let schema: Value = serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap();
+    for (key, range) in [("averages", AVERAGES), ("window_s", WINDOW_S)] {
+        let said = &schema["$defs"]["response"]["properties"][key];
+        assert_eq!([&said["minimum"], &said["maximum"]].map(|limit| limit.as_f64().unwrap()), range, "{key}");
+    }
+}

@@ -6,6 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 
+use gdcm_core::assembly::FileScope;
 use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
 
@@ -115,9 +116,15 @@ pub struct AssembleArguments {
     /// Headings of the columns of tables that do not say them, separated by commas: `omega [rad/s],mag [dB],phase [deg]`.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub headings: Vec<String>,
-    /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model; may be repeated.
+    /// The sign of a channel, where names do not say it: CHANNEL=-1 of the identified models, CHANNEL=-1:physics, CHANNEL=-1:all, CHANNEL=-1:FILE of one model or of the folders of a pattern (flight_*); may be repeated.
     #[arg(long, value_name = "CHANNEL=SIGN[:OF]", value_parser = file_sign, allow_hyphen_values = true)]
-    pub sign: Vec<FileSign>,
+    pub sign: Vec<OfFiles<f64>>,
+    /// The unit of a channel, whatever the files say, of the identified models or of others as with --sign: LON=in, LON=in:physics; may be repeated.
+    #[arg(long, value_name = "CHANNEL=UNIT[:OF]", value_parser = file_unit)]
+    pub unit: Vec<OfFiles<String>>,
+    /// What a channel is multiplied by to be in the dataset's unit, negative where the sign is the other one, of the identified models or of others as with --sign: LON=8, NZ=-9.81:all; may be repeated.
+    #[arg(long, value_name = "CHANNEL=X[:OF]", value_parser = file_factor, allow_hyphen_values = true)]
+    pub factor: Vec<OfFiles<f64>>,
     /// Sample time of models that do not say it, in seconds; 0 where they are of continuous time.
     #[arg(long, value_name = "SECONDS", value_parser = real_number)]
     pub sample_time: Option<f64>,
@@ -261,12 +268,15 @@ pub type ChannelSign = OfChannel<Option<SignRole>>;
 fn sign_parts(text: &str) -> Option<(&str, f64, &str)> {
     let (channel, rest) = text.rsplit_once('=')?;
     let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
-    let sign = match sign.trim() {
-        "-1" | "-" => -1.0,
-        "1" | "+1" | "+" => 1.0,
-        _ => return None,
-    };
-    Some((channel.trim(), sign, of.trim()))
+    Some((channel.trim(), sign_of(sign.trim())?, of.trim()))
+}
+
+fn sign_of(text: &str) -> Option<f64> {
+    match text {
+        "-1" | "-" => Some(-1.0),
+        "1" | "+1" | "+" => Some(1.0),
+        _ => None,
+    }
 }
 
 /// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
@@ -452,24 +462,49 @@ fn rejection(text: &str) -> Result<Rejection, String> {
     Ok(Rejection { condition: id.trim().parse().map_err(|_| expected())?, model: model.to_owned() })
 }
 
-/// The sign of a channel in files that are assembled: of a role, of all, or of one model.
+/// What an option says of a channel in files that are assembled.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FileSign {
+pub struct OfFiles<T> {
     /// The channel.
     pub channel: String,
-    /// 1 or -1.
-    pub sign: f64,
-    /// "identified", "physics", "all", or the file of a model.
-    pub of: String,
+    /// What is said of it.
+    pub said: T,
+    /// The files: those of the identified models where nothing else is said.
+    pub of: FileScope,
 }
 
-fn file_sign(text: &str) -> Result<FileSign, String> {
-    match sign_parts(text).filter(|(channel, _, of)| !channel.is_empty() && !of.is_empty()) {
-        Some((channel, sign, of)) => Ok(FileSign { channel: channel.to_owned(), sign, of: of.to_owned() }),
-        None => Err(format!(
-            "expected a channel with 1 or -1, as NZ=-1, then :identified, :physics, :all or : and the file of a model, found \"{text}\""
-        )),
+impl<T> OfFiles<T> {
+    /// Reads `CHANNEL=VALUE`, or `CHANNEL=VALUE:OF`; none where a part is empty or `value` does not take it.
+    fn read(text: &str, value: impl FnOnce(&str) -> Option<T>) -> Option<Self> {
+        let (channel, rest) = text.split_once('=')?;
+        let (said, of) = rest.split_once(':').unwrap_or((rest, "identified"));
+        let [channel, said, of] = [channel, said, of].map(str::trim);
+        if channel.is_empty() || said.is_empty() || of.is_empty() {
+            return None;
+        }
+        Some(Self { channel: channel.to_owned(), said: value(said)?, of: FileScope::from(of.to_owned()) })
     }
+}
+
+/// Whose channel an option speaks of, for its error.
+const OF_FILES: &str =
+    ":identified, :physics, :all or : and the file of a model or a pattern of folders may stand behind it";
+
+fn file_sign(text: &str) -> Result<OfFiles<f64>, String> {
+    OfFiles::read(text, sign_of)
+        .ok_or_else(|| format!("expected a channel with 1 or -1, as NZ=-1; {OF_FILES}; found \"{text}\""))
+}
+
+fn file_unit(text: &str) -> Result<OfFiles<String>, String> {
+    OfFiles::read(text, |unit| Some(unit.to_owned()))
+        .ok_or_else(|| format!("expected CHANNEL=UNIT, as LON=in; {OF_FILES}; found \"{text}\""))
+}
+
+fn file_factor(text: &str) -> Result<OfFiles<f64>, String> {
+    let factor = |text: &str| text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor != 0.0);
+    OfFiles::read(text, factor).ok_or_else(|| {
+        format!("expected CHANNEL=X with X a number other than 0, as LON=8 or NZ=-1; {OF_FILES}; found \"{text}\"")
+    })
 }
 
 #[cfg(test)]
@@ -513,6 +548,19 @@ mod tests {
         assert_eq!(said("az (down)=-1:all"), Ok(("az (down)".to_owned(), Some(SignRole::All))));
         assert_eq!(said("NZ=1"), Ok(("NZ".to_owned(), None)));
         assert!(said("NZ").is_err() && said("NZ=-2").is_err() && said("NZ=-1:none").is_err());
+    }
+
+    #[test]
+    fn a_unit_or_a_factor_of_files_says_its_channel_and_whose_it_is() {
+        let unit = |text: &str| file_unit(text).map(|of| (of.channel, of.said, of.of));
+        let expected = |of: FileScope| Ok(("P".to_owned(), "rad/s".to_owned(), of));
+        assert_eq!(unit("P=rad/s"), expected(FileScope::Identified));
+        assert_eq!(unit("P=rad/s:physics"), expected(FileScope::Physics));
+        assert_eq!(unit("P = rad/s : c1/x=2.mat"), expected(FileScope::Files("c1/x=2.mat".into())));
+        assert_eq!(file_factor("NZ=-9.81:all").map(|of| (of.said, of.of)), Ok((-9.81, FileScope::All)));
+        assert_eq!(file_sign("NZ=-1:flight_*").map(|of| of.of), Ok(FileScope::Files("flight_*".into())));
+        assert!(["P", "P=", "=in", "P=in:"].iter().all(|wrong| file_unit(wrong).is_err()));
+        assert!(["P=0", "P=x", "P=inf"].iter().all(|wrong| file_factor(wrong).is_err()) && file_sign("P=2").is_err());
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use gdcm_core::assembly::{Assembly, Headings, Rules, proposed_rules};
+use gdcm_core::assembly::{Assembly, ChannelDeclarations, FileScope, FoundModel, Headings, Rules, proposed_rules};
 use gdcm_core::message_text::{sanitized, sanitized_path};
 use gdcm_core::study::{ConditionFailure, Table};
 use gdcm_core::units::number;
@@ -14,7 +14,7 @@ use gdcm_files::{
     relative_folder, rules_path, sources_folder,
 };
 
-use super::arguments::{AssembleArguments, ConvertArguments, FileSign};
+use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;
 use super::terminal::{Failure, caution, coded_caution, error, indented, note, progress_target, say};
 
@@ -55,20 +55,21 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     if found.models.is_empty() {
         return Err(Failure::nothing_in(&arguments.files, "model"));
     }
-    add_models(&found.models, &arguments.out, &mut outputs)?;
+    let models: Vec<FoundModel> = found.models.into_iter().map(FoundModel::with_names_of_file).collect();
+    add_models(&models, &arguments.out, &mut outputs)?;
     outputs.persist()?;
-    let lines = found.models.iter().map(|model| format!("{}: {}\n", sanitized(&model.key()), model.words()));
+    let lines = models.iter().map(|model| format!("{}: {}\n", sanitized(&model.key()), model.words()));
     say(&format!(
         "{}{}: {}\n",
         lines.collect::<String>(),
         sanitized_path(&arguments.out),
-        counted(found.models.len(), "model")
+        counted(models.len(), "model")
     ))
 }
 
 /// Makes a dataset of the models in a folder.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
-    check_signs(&arguments.sign)?;
+    check_declared_once(arguments)?;
     let rules_path = arguments.rules.clone().unwrap_or_else(|| rules_path(&arguments.out));
     let is_proposed = arguments.rules.is_none();
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.rules.iter().cloned().collect());
@@ -82,14 +83,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
     rules.headings = headings;
     rules.sample_time_s = arguments.sample_time.or(rules.sample_time_s);
-    for FileSign { channel, sign, of } in arguments.sign.iter().cloned() {
-        let signs = match of.as_str() {
-            "all" => &mut rules.signs,
-            "identified" | "physics" => rules.role_signs.entry(of).or_default(),
-            _ => rules.rows.entry(of).or_default().signs.get_or_insert_default(),
-        };
-        signs.insert(channel, sign);
-    }
+    declare(arguments, &found.models, &mut rules)?;
     let assembly = Assembly::new(found.models, rules);
     say(&table(&assembly))?;
     for caution in assembly.cautions() {
@@ -135,13 +129,79 @@ fn said_rules(path: &Path) -> Result<Rules, Failure> {
     Ok(rules)
 }
 
-/// Refuses what is said twice of the sign of one channel of the same models.
-fn check_signs(signs: &[FileSign]) -> Result<(), Failure> {
-    let mut seen = BTreeSet::new();
-    match signs.iter().find(|sign| !seen.insert((&sign.channel, &sign.of))) {
-        Some(FileSign { channel, of, .. }) => Err(Failure::option("--sign", format!("{channel} of {of} stands twice"))),
-        None => Ok(()),
+/// Refuses what is said twice of one channel of the same models.
+fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
+    let mut signs = BTreeSet::new();
+    for OfFiles { channel, of, .. } in &arguments.sign {
+        if !signs.insert((channel, of)) {
+            return Err(Failure::option("--sign", format!("{channel} of {of} stands twice")));
+        }
     }
+    let mut conversions = BTreeSet::new();
+    let of_units = arguments.unit.iter().map(|unit| ("--unit", &unit.channel, &unit.of));
+    let of_factors = arguments.factor.iter().map(|factor| ("--factor", &factor.channel, &factor.of));
+    for (option, channel, of) in of_units.chain(of_factors) {
+        if !conversions.insert((channel, of)) {
+            return Err(Failure::option(option, format!("{channel} of {of} has a unit or a factor already")));
+        }
+    }
+    Ok(())
+}
+
+/// Puts the units, factors and signs of the command line into the rules.
+fn declare(arguments: &AssembleArguments, models: &[FoundModel], rules: &mut Rules) -> Result<(), Failure> {
+    for OfFiles { channel, said, of } in &arguments.unit {
+        let units = [(channel.clone(), said.clone())].into();
+        let declared = ChannelDeclarations { units, ..ChannelDeclarations::default() };
+        check_declared("--unit", channel, of, models, rules)?;
+        declare_of(of, &declared, models, rules);
+    }
+    for OfFiles { channel, said, of } in &arguments.factor {
+        let factors = [(channel.clone(), *said)].into();
+        let declared = ChannelDeclarations { factors, ..ChannelDeclarations::default() };
+        check_declared("--factor", channel, of, models, rules)?;
+        declare_of(of, &declared, models, rules);
+    }
+    for OfFiles { channel, said, of } in &arguments.sign {
+        let signs = [(channel.clone(), *said)].into();
+        let declared = ChannelDeclarations { signs, ..ChannelDeclarations::default() };
+        check_declared("--sign", channel, of, models, rules)?;
+        declare_of(of, &declared, models, rules);
+    }
+    Ok(())
+}
+
+/// Declares something of one model beside what the rules say of that model, or of more models by their scope.
+fn declare_of(of: &FileScope, declared: &ChannelDeclarations, models: &[FoundModel], rules: &mut Rules) {
+    match of {
+        FileScope::Files(key) if models.iter().any(|model| model.key() == *key) => {
+            rules.rows.entry(key.clone()).or_default().declare(declared);
+        }
+        _ => rules.declare(of.clone(), declared),
+    }
+}
+
+/// Refuses an option for a channel that the dataset does not have, or for files that are not among those read.
+fn check_declared(
+    option: &'static str,
+    channel: &str,
+    of: &FileScope,
+    models: &[FoundModel],
+    rules: &Rules,
+) -> Result<(), Failure> {
+    let mut channels = rules.inputs.iter().chain(&rules.outputs);
+    if !channels.any(|rule| rule.name == channel) {
+        let names: Vec<&str> = rules.inputs.iter().chain(&rules.outputs).map(|rule| rule.name.as_str()).collect();
+        let reason = format!("the dataset has no channel {channel}; it has {}", names.join(", "));
+        return Err(Failure::option(option, reason));
+    }
+    if let FileScope::Files(pattern) = of
+        && !models.iter().any(|model| of.holds(model, None))
+    {
+        let reason = format!("{channel}: no model is in \"{pattern}\"; models are named as in the last column, file");
+        return Err(Failure::option(option, reason));
+    }
+    Ok(())
 }
 
 /// The models of files and folders; what could not be taken is told on standard error.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use gdcm_core::assembly::{Assembly, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
+use gdcm_core::assembly::{Assembly, FoundModel, Headings, ProblemKind, RowRole, UnitRule, proposed_rules};
 use gdcm_core::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
 use gdcm_files::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
 use gdcm_files::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
@@ -408,7 +408,7 @@ fn what_was_converted_is_read_again_as_the_same_models() {
     assert_eq!(again.models.len(), 2, "{:?}", again.faults);
     let first =
         read_models(&[file("trim.mat").into(), file("frf_Q_LON.csv").into()], &Headings::new(), &Silent).unwrap();
-    for (a, b) in first.models.iter().zip(&again.models) {
+    for (a, b) in first.models.into_iter().map(FoundModel::with_names_of_file).zip(&again.models) {
         assert_eq!((&a.draft.matrices, &a.inputs, &a.outputs), (&b.draft.matrices, &b.inputs, &b.outputs));
         assert_eq!(
             a.draft.response.as_ref().map(|of| (&of.omega, &of.re, &of.im)),
@@ -559,4 +559,138 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
         if path.is_dir() { files.extend(walk(&path)) } else { files.push(path) }
     }
     files
+}
+
+/// A response of one channel pair, dB and degrees over rad/s, under a name of a file.
+fn write_response(folder: &Path, name: &str) {
+    let mut frf = String::from("omega [rad/s],mag [dB],phase [deg]\n");
+    for step in 0..40 {
+        writeln!(frf, "{},{},-10", 0.3 * 1.1f64.powi(step), -0.5 * f64::from(step)).unwrap();
+    }
+    std::fs::write(folder.join(name), frf).unwrap();
+}
+
+/// A model of one state in a file of MATLAB: gain, and names and units of its input and output.
+fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2]) {
+    let scalar = |value: f64| DMatrix::from_element(1, 1, value);
+    let lists = [("InputName", names[0]), ("OutputName", names[1])].map(|(key, name)| (key, vec![name.to_owned()]));
+    let mut variables: Vec<Variable> = [("A", -1.0), ("B", gain), ("C", 1.0), ("D", 0.0)]
+        .into_iter()
+        .map(|(name, value)| Variable { name: name.into(), value: array(&scalar(value)) })
+        .collect();
+    variables.extend(lists.map(|(key, names)| Variable { name: key.into(), value: cell(&names) }));
+    for (key, unit) in ["InputUnit", "OutputUnit"].into_iter().zip(units) {
+        variables.extend(unit.map(|unit| Variable { name: key.into(), value: cell(&[unit.to_owned()]) }));
+    }
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, write_mat(&variables).unwrap()).unwrap();
+}
+
+/// The gain C B of the first model of a bundle of the first condition, in the dataset's units.
+fn gain_of(dataset: &Path, kind: BundleKind) -> f64 {
+    let dataset = load_dataset(dataset).unwrap().dataset;
+    let [_, b, c, _] = matrices(&dataset.conditions()[0].bundle(kind)[0]);
+    b[(0, 0)] * c[(0, 0)]
+}
+
+#[test]
+fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let models = folder.path().join("models/c1_60kt");
+    write_small(&models.join("nominal.mat"), 1.0, ["LON", "Q"], [Some("%"), Some("deg/s")]);
+    let out = folder.path().join("made.json");
+    let assemble = |more: &[&str]| {
+        let root = folder.path().join("models");
+        run(&[&["assemble", root.to_str().unwrap(), "--out", out.to_str().unwrap(), "--force"], more].concat())
+    };
+    let units = ["--unit", "LON=%", "--unit", "Q=deg/s"];
+    // It names the pedals, which the dataset does not have; a dataset of zeros was made of it.
+    write_response(&models, "frf_r_ped_run2.csv");
+    let ended = assemble(&units);
+    assert_eq!(ended.status, 2, "{}{}", ended.out, ended.error);
+    assert!(ended.error.contains("frf_r_ped_run2.csv: no input of the measured response"), "{}", ended.error);
+    assert!(ended.error.contains("--headings") && ended.error.contains("\"models\""), "two ways: {}", ended.error);
+    assert!(!out.exists());
+    std::fs::remove_file(models.join("frf_r_ped_run2.csv")).unwrap();
+    for name in ["frf_q_delta_lon.csv", "q_per_lon.csv", "frf_q_lon_run2.csv", "frf_pitch_rate_lon_cyclic.csv"] {
+        write_response(&models, name);
+        let ended = assemble(&units);
+        assert_eq!(ended.status, 0, "{name}: {}", ended.error);
+        let dataset = load_dataset(&out).unwrap().dataset;
+        let Dynamics::Measured(response) = &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics else {
+            panic!("{name}: the response is measured")
+        };
+        let first = response.values()[gdcm_core::dataset::Pair::new(0, 0)][0];
+        assert!((first.norm() - 1.0).abs() < 1e-12, "{name}: 0 dB, not {first}");
+        std::fs::remove_file(models.join(name)).unwrap();
+    }
+    write_response(&models, "frf_q_lon.csv");
+    write_response(&models, "frf_q_lon_run2.csv");
+    let ended = assemble(&units);
+    assert_eq!(ended.status, 2);
+    assert!(ended.error.contains("Q/LON of the measured model \"measured\" is in"), "{}", ended.error);
+}
+
+#[test]
+fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_that_is_printed() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("models");
+    // The identified file has another unit and says none, another name of the same input, and an output whose sign is open.
+    write_small(&root.join("c1_60kt/nominal.mat"), 1.0, ["LON", "NZ"], [Some("%"), Some("m/s^2")]);
+    write_small(&root.join("c1_60kt/flight.mat"), -2.0, ["xb", "az"], [None, Some("g")]);
+    let out = folder.path().join("made.json");
+    let assemble = |more: &[&str]| {
+        run(&[&["assemble", root.to_str().unwrap(), "--out", out.to_str().unwrap(), "--force"], more].concat())
+    };
+    let rules = folder.path().join("made.gdcm-rules.json");
+    let ended = assemble(&[]);
+    assert_eq!(ended.status, 2, "{}", ended.error);
+    // The engineer's dataset has the channels of the physics model.
+    let mut said: serde_json::Value = serde_json::from_slice(&std::fs::read(&rules).unwrap()).unwrap();
+    said["inputs"] = json!([{"name": "LON", "unit": "%"}]);
+    said["outputs"] = json!([{"name": "NZ", "unit": "m/s^2"}]);
+    let rules = folder.path().join("said.gdcm-rules.json");
+    std::fs::write(&rules, said.to_string()).unwrap();
+    let with = |more: &[&str]| assemble(&[&["--rules", rules.to_str().unwrap()], more].concat());
+    let ended = with(&[]);
+    assert_eq!(ended.status, 2);
+    for option in ["(--unit LON=UNIT:identified)", "(--sign NZ=-1:identified)"] {
+        assert!(ended.error.contains(option), "{option}: {}", ended.error);
+    }
+    let ended = with(&["--unit", "LON=in:identified", "--sign", "NZ=-1:identified"]);
+    assert!(ended.error.contains("(--factor LON=X:identified)"), "{}", ended.error);
+    let gravity = 9.806_65;
+    for of in [":identified", "", ":flight*", ":c1_60kt/flight.mat", ":c1_*/flight.mat"] {
+        let sign = format!("NZ=-1{of}");
+        let ended = with(&["--factor", &format!("LON=8{of}"), "--sign", &sign]);
+        assert_eq!(ended.status, 0, "{of}: {}", ended.error);
+        assert_eq!(gain_of(&out, BundleKind::Physics), 1.0, "{of}: the physics model is as it was");
+        let identified = gain_of(&out, BundleKind::Identified);
+        assert!((identified / (2.0 * gravity / 8.0) - 1.0).abs() < 1e-12, "{of}: {identified}");
+    }
+    let ended = with(&["--factor", "LON=8", "--factor", "NZ=-9.8:flight.mat"]);
+    assert_eq!(ended.status, 0, "{}", ended.error);
+    let identified = gain_of(&out, BundleKind::Identified);
+    assert!((identified / (2.0 * 9.8 / 8.0) - 1.0).abs() < 1e-12, "a factor has its sign: {identified}");
+    for (wrong, words) in [
+        (["--factor", "PED=8"], "--factor: the dataset has no channel PED"),
+        (["--sign", "NZ=-1:c7/*"], "--sign: NZ: no model is in \"c7/*\""),
+    ] {
+        let ended = with(&wrong);
+        assert_eq!(ended.status, 2);
+        assert!(ended.error.contains(words), "{}", ended.error);
+    }
+    let ended = with(&["--factor", "LON=8", "--unit", "LON=in"]);
+    assert!(ended.error.contains("LON of identified has a unit or a factor already"), "{}", ended.error);
+}
+
+#[test]
+fn units_are_proposed_from_most_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join("c1_60kt").join(name);
+    write_small(&place("a_flight.mat"), 1.0, ["LON", "Q"], [Some("in"), Some("rad/s")]);
+    write_small(&place("nominal.mat"), 1.0, ["LON", "Q"], [Some("%"), Some("deg/s")]);
+    write_small(&place("roll+5.mat"), 1.0, ["LON", "Q"], [Some("percent"), Some("°/s")]);
+    let rules = proposed_rules("", &found_in(folder.path()).models);
+    assert_eq!((rules.inputs[0].unit.as_str(), rules.outputs[0].unit.as_str()), ("%", "deg/s"));
 }

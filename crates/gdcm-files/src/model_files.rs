@@ -12,7 +12,7 @@ use gdcm_core::dataset::{
 use crate::file_error::FileError;
 use crate::formats::text::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit, read_matrices,
-    read_matrix, read_table, says_quantity, split_complex,
+    read_matrix, read_table, split_complex,
 };
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::models_file::{bare_draft, labels};
@@ -343,46 +343,24 @@ fn models_of_table(table: &TextTable, file: &str) -> Result<(Found<FoundModel>, 
     };
     let values = columns.values(table)?;
     let several = columns.responses.len() > 1;
-    let named = file_label(file);
     let models = columns.responses.iter().zip(values).map(|(response, points)| {
         let mut notes: Vec<String> = columns.notes.iter().chain(&table.notes).cloned().collect();
         if response.coherence.is_some() {
             notes.push("coherence taken as γ²".to_owned());
         }
-        model(response, points, (several, &named), notes)
+        model(response, points, several, notes)
     });
     Ok((Found { items: models.collect(), unused: columns.unused.clone(), ..Found::default() }, Vec::new()))
 }
 
-/// Output and input that the name of a file says, as its last two words: "flight_P_LAT", "frf LAT to P".
-fn file_label(file: &str) -> Option<(String, String)> {
-    let name = file.rsplit('/').next().unwrap_or(file);
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-    let words: Vec<&str> = stem.split(['_', '-', ' ']).filter(|word| !word.is_empty()).collect();
-    // "frf-omega-re-im" says what the columns are, not whose response it is.
-    if words.iter().rev().take(2).any(|word| says_quantity(word)) {
-        return None;
-    }
-    match words.as_slice() {
-        [.., input, to, output] if to.eq_ignore_ascii_case("to") => Some(((*output).to_owned(), (*input).to_owned())),
-        [.., output, input] => Some(((*output).to_owned(), (*input).to_owned())),
-        _ => None,
-    }
-}
-
-fn model(
-    response: &RecognisedResponse,
-    points: ResponsePoints,
-    (several, file): (bool, &Option<(String, String)>),
-    notes: Vec<String>,
-) -> FoundModel {
+fn model(response: &RecognisedResponse, points: ResponsePoints, several: bool, notes: Vec<String>) -> FoundModel {
     let count = points.omega.len();
     let array = |values: Vec<f64>| ResponseArray { shape: [1, 1, count], values };
-    let of_file = file.as_ref().filter(|_| !several);
-    let output = response.output.clone().or_else(|| of_file.map(|(output, _)| output.clone()));
-    let input = response.input.clone().or_else(|| of_file.map(|(_, input)| input.clone()));
+    let (output, input) = (response.output.clone(), response.input.clone());
     let variable = match (several, &output, &input) {
         (true, Some(output), Some(input)) => Some(format!("{output}/{input}")),
+        (true, Some(output), None) => Some(output.clone()),
+        (true, None, Some(input)) => Some(input.clone()),
         _ => None,
     };
     let label = |name: Option<String>| ChannelLabel { name, unit: None };

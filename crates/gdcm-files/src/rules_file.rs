@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use gdcm_core::assembly::{ChannelRule, NamePattern, RowRule, Rules, Signs, UnitRule, standard_patterns};
+use gdcm_core::assembly::{
+    ChannelRule, NamePattern, RowRule, Rules, ScopedDeclarations, Signs, UnitRule, standard_patterns,
+};
 use gdcm_core::dataset::Location;
 use gdcm_core::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_core::whole_number::whole;
@@ -48,6 +50,7 @@ fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
         })
     };
     let patterns = text.patterns.iter().enumerate().map(pattern).collect::<Result<_, _>>()?;
+    check_declarations(&text)?;
     let of_roles = text.role_signs.iter().map(|(role, signs)| (format!("role_signs, {role}"), signs));
     let of_models =
         text.models.iter().filter_map(|(key, row)| Some((format!("models, {key}, signs"), row.signs.as_ref()?)));
@@ -61,7 +64,7 @@ fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
         let fault = ContentFault::Word { expected: "\"identified\" or \"physics\"".to_owned(), found: role.clone() };
         return Err(ContentError::new(Location::entry("role_signs".to_owned()), fault));
     }
-    Ok(Rules {
+    let mut rules = Rules {
         name: text.name,
         description: text.description,
         inputs: text.inputs,
@@ -72,10 +75,45 @@ fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
         units: text.conversions,
         signs: text.signs,
         role_signs: text.role_signs,
+        declarations: Vec::new(),
         sample_time_s: text.sample_time_s,
         headings: text.headings,
         rows: text.models,
-    })
+    };
+    for ScopedDeclarations { of, channels } in text.declarations {
+        rules.declare(of, &channels);
+    }
+    Ok(rules)
+}
+
+/// Refuses a factor that converts nothing, an empty unit, a sign that is none, and a unit beside a factor of one channel.
+fn check_declarations(text: &RulesText) -> Result<(), ContentError> {
+    let of_scopes = text.declarations.iter().map(|declared| {
+        let place = format!("declarations, {}", declared.of);
+        (place, declared.channels.clone())
+    });
+    let of_models = text.models.iter().map(|(key, row)| (format!("models, {key}"), row.declarations()));
+    for (place, declared) in of_scopes.chain(of_models) {
+        let wrong = |key: &str, channel: &str, expected: &str, found: String| {
+            let fault = ContentFault::Word { expected: expected.to_owned(), found };
+            Err(ContentError::new(Location::entry(format!("{place}, {key}, {channel}")), fault))
+        };
+        for (channel, factor) in &declared.factors {
+            if !factor.is_finite() || *factor == 0.0 {
+                return wrong("factors", channel, "a number other than 0", factor.to_string());
+            }
+            if let Some(unit) = declared.units.get(channel) {
+                return wrong("factors", channel, "a unit or a factor, not both", format!("{unit} and {factor}"));
+            }
+        }
+        if let Some((channel, unit)) = declared.units.iter().find(|(_, unit)| unit.trim().is_empty()) {
+            return wrong("units", channel, "a unit", unit.clone());
+        }
+        if let Some((channel, sign)) = declared.signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
+            return wrong("signs", channel, "1 or -1", sign.to_string());
+        }
+    }
+    Ok(())
 }
 
 fn text_of(rules: &Rules) -> RulesText {
@@ -92,6 +130,7 @@ fn text_of(rules: &Rules) -> RulesText {
         patterns: rules.patterns.iter().map(|pattern| pattern.as_str().to_owned()).collect(),
         signs: rules.signs.clone(),
         role_signs: rules.role_signs.clone(),
+        declarations: rules.declarations.clone(),
         sample_time_s: rules.sample_time_s,
         headings: rules.headings.clone(),
         models: rules.rows.clone(),
@@ -105,6 +144,9 @@ pub(super) const FORMAT: Format = Format { name: "gdcm-rules", version: 1 };
 
 /// Most patterns, and conversions, of a rules file.
 const MOST_PATTERNS: usize = 200;
+
+/// Most declarations of a rules file, each for a role, for folders or for a file.
+const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
 pub(super) struct RulesText {
@@ -131,6 +173,9 @@ pub(super) struct RulesText {
     /// Signs of channels in the models of a role, "identified" or "physics".
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) role_signs: BTreeMap<String, Signs>,
+    /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_DECLARATIONS, _, _>")]
+    pub(super) declarations: Vec<ScopedDeclarations>,
     /// Sample time of models without one \[s\], 0 of continuous-time models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
@@ -149,7 +194,7 @@ fn standard() -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_core::assembly::RowRole;
+    use gdcm_core::assembly::{FileScope, RowRole};
 
     use crate::output_set::Existing;
 
@@ -170,12 +215,18 @@ mod tests {
             left_out: Some(false),
             signs: Some([("R".to_owned(), -1.0)].into()),
             sample_time_s: Some(0.02),
+            units: Some([("Q".to_owned(), "rad/s".to_owned())].into()),
+            factors: Some([("LON".to_owned(), 2.0)].into()),
             ..RowRule::default()
         };
         rules.rows.insert("c03/nom.mat".into(), row);
         rules.headings.insert("frf.csv".into(), vec!["omega [Hz]".into(), "re".into(), "im".into()]);
         rules.signs.insert("NZ".into(), -1.0);
         rules.role_signs.insert("identified".into(), [("NZ".to_owned(), 1.0)].into());
+        rules.declarations_mut(FileScope::Identified).units.insert("LON".into(), "in".into());
+        let of_folder = rules.declarations_mut(FileScope::from("flight_*".to_owned()));
+        of_folder.factors.insert("LON".into(), -8.0);
+        of_folder.signs.insert("NZ".into(), -1.0);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("week.gdcm-rules.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
@@ -194,6 +245,10 @@ mod tests {
             (r#""patterns": ["("]}"#, "patterns, entry 1"),
             (r#""models": {"a.mat": {"role": "trim"}}}"#, "a.mat"),
             (r#""signs": {"NZ": -2}}"#, "signs, NZ"),
+            (r#""declarations": [{"of": "flight_*", "factors": {"LON": 0}}]}"#, "declarations, flight_*, factors, LON"),
+            (r#""declarations": [{"of": "all", "factors": {"LON": 2}, "units": {"LON": "in"}}]}"#, "factors, LON"),
+            (r#""declarations": [{"of": "physics", "units": {"LON": " "}}]}"#, "declarations, physics, units, LON"),
+            (r#""models": {"a.mat": {"factors": {"Q": 0}}}}"#, "models, a.mat, factors, Q"),
             (r#""role_signs": {"nominal": {"NZ": -1}}}"#, "role_signs"),
         ] {
             std::fs::write(&path, format!("{start}{rest}")).unwrap();

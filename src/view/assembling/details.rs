@@ -7,7 +7,7 @@ use egui::{Grid, RichText, Role, Ui};
 use nalgebra::Complex;
 
 use gdcm_core::assembly::{ChannelLabel, FoundModel, Part, RowRole, RowRule, Signs};
-use gdcm_core::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_core::dataset::{Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace};
 use gdcm_core::response::{FrequencyGrid, PreparedModel, ResponseShape};
 use gdcm_core::units::number;
 use gdcm_files::UnsaidUnit;
@@ -120,11 +120,16 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
 fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let (row, found) = (&part.row, &part.found);
     let field = |name, value: Option<String>, hint, says| Field { name, value: value.unwrap_or_default(), hint, says };
-    let inputs = channel_names(&found.inputs, rule.and_then(|rule| rule.inputs.as_ref()));
-    let outputs = channel_names(&found.outputs, rule.and_then(|rule| rule.outputs.as_ref()));
+    let [inputs, outputs] = [ChannelSide::Input, ChannelSide::Output].map(|side| {
+        let [of_inputs, of_outputs] = &part.labels;
+        let said = rule.and_then(|rule| side.of(rule.inputs.as_ref(), rule.outputs.as_ref()));
+        channel_names(side.of(of_inputs, of_outputs), said)
+    });
     let condition = row.condition.map(|of| of.to_string());
     let trim = Some(trim_words(&row.perturbation));
     let signs = rule.and_then(|rule| rule.signs.as_ref()).map(trim_words);
+    let units = rule.and_then(|rule| rule.units.as_ref()).map(unit_words);
+    let factors = rule.and_then(|rule| rule.factors.as_ref()).map(trim_words);
     let sample_time = part.sample_time_s.or(found.draft.timing.sample_time_s).map(number);
     vec![
         field("condition", condition, "a number", Says::Other(say_condition)),
@@ -137,6 +142,8 @@ fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
         field("inputs", Some(inputs), "in the file's order: LON, LAT", Says::Names(|row| &mut row.inputs)),
         field("outputs", Some(outputs), "in the file's order: P, Q", Says::Names(|row| &mut row.outputs)),
         field("signs", signs, "of channels with the other sign: NZ -1", Says::Other(say_signs)),
+        field("units", units, "whatever the file says: LON in", Says::Other(say_units)),
+        field("factors", factors, "to the dataset's unit: LON 8", Says::Other(say_factors)),
         field("sample time", sample_time, "s; 0 continuous", Says::Number(|row| &mut row.sample_time_s)),
         match row.role {
             Some(RowRole::Identified) => {
@@ -193,6 +200,50 @@ pub(super) fn signs_of(text: &str) -> Result<Signs, String> {
         Some((channel, sign)) => Err(format!("the sign of {channel}: expected 1 or -1, found {}", number(*sign))),
         None => Ok(signs),
     }
+}
+
+/// "LON in, Q rad/s": a channel of the dataset and its unit in the file; an empty text says nothing.
+fn say_units(text: &str, row: &mut RowRule) -> Result<(), String> {
+    let units = units_of(text)?;
+    // A channel has a unit or a factor.
+    if let Some(factors) = &mut row.factors {
+        factors.retain(|channel, _| !units.contains_key(channel));
+    }
+    row.units = Some(units).filter(|units| !units.is_empty());
+    Ok(())
+}
+
+/// "LON 8, NZ -9.81": a channel of the dataset and its factor; an empty text says nothing.
+fn say_factors(text: &str, row: &mut RowRule) -> Result<(), String> {
+    let factors = factors_of(text)?;
+    if let Some(units) = &mut row.units {
+        units.retain(|channel, _| !factors.contains_key(channel));
+    }
+    row.factors = Some(factors).filter(|factors| !factors.is_empty());
+    Ok(())
+}
+
+pub(super) fn factors_of(text: &str) -> Result<BTreeMap<String, f64>, String> {
+    let factors = numbers_by_name(text, "a channel and a number other than 0 as in \"LON 8\"")?;
+    match factors.iter().find(|(_, factor)| **factor == 0.0) {
+        Some((channel, _)) => Err(format!("the factor of {channel}: expected a number other than 0")),
+        None => Ok(factors),
+    }
+}
+
+pub(super) fn units_of(text: &str) -> Result<BTreeMap<String, String>, String> {
+    let mut units = BTreeMap::new();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let Some((channel, unit)) = part.rsplit_once(' ') else {
+            return Err(format!("expected a channel and its unit as in \"LON in\", found \"{part}\""));
+        };
+        units.insert(channel.trim().to_owned(), unit.to_owned());
+    }
+    Ok(units)
+}
+
+pub(super) fn unit_words(units: &BTreeMap<String, String>) -> String {
+    units.iter().map(|(channel, unit)| format!("{channel} {unit}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Names and numbers, separated by commas.
@@ -368,6 +419,12 @@ mod tests {
         say_signs("NZ -1", &mut row).unwrap();
         assert_eq!(row.signs.as_ref().and_then(|signs| signs.get("NZ")), Some(&-1.0));
         assert!(say_signs("NZ -2", &mut row).unwrap_err().contains("1 or -1"));
+        say_units("LON in, roll rate rad/s", &mut row).unwrap();
+        assert_eq!(unit_words(&row.units.clone().unwrap()), "LON in, roll rate rad/s");
+        say_factors("LON 8", &mut row).unwrap();
+        assert_eq!(unit_words(&row.units.clone().unwrap()), "roll rate rad/s", "a unit or a factor");
+        assert_eq!(row.factors.as_ref().map(trim_words).as_deref(), Some("LON 8"));
+        assert!(say_units("in", &mut row).is_err() && say_factors("LON 0", &mut row).is_err());
         say_condition("3", &mut row).unwrap();
         assert_eq!(row.condition, Some(3));
         assert!(say_condition("three", &mut row).is_err());

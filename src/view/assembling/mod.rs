@@ -7,14 +7,14 @@ mod table;
 
 use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, Ui};
 
-use gdcm_core::assembly::{ChannelRule, ProblemKind, Rules, Signs, UnitRule};
+use gdcm_core::assembly::{ChannelRule, FileScope, ProblemKind, Rules, Signs, UnitRule};
 use gdcm_core::dataset::ChannelSide;
 use gdcm_core::units::number;
 
 use super::{
     Asks, Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
 };
-use details::{Preview, columns_ui, details_ui, preview_ui, signs_of, trim_words};
+use details::{Preview, columns_ui, details_ui, factors_of, preview_ui, signs_of, trim_words, unit_words, units_of};
 use table::{problems_ui, table_ui};
 
 pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
@@ -192,6 +192,7 @@ fn channels_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, command
         }
     });
     signs_ui(ui, assembly, palette, commands);
+    declarations_ui(ui, assembly, palette, commands);
     conversions_ui(ui, assembly, palette, commands);
 }
 
@@ -210,6 +211,44 @@ fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: 
             if let Some(text) = entry_ui(ui, name, &trim_words(place(&mut rules)), "NZ -1", 160.0) {
                 commands.push(match signs_of(&text) {
                     Ok(signs) => assembly.changed(|rules| *place(rules) = signs),
+                    Err(why) => Command::Refuse(format!("{name}: {why}")),
+                });
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// The units and factors that are declared of channels for a role; those of one model stand with the model, those of a pattern of
+/// folders in the rules file.
+fn declarations_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+    let rules = assembly.assembly().rules();
+    Grid::new("units and factors of channels").num_columns(2).spacing([6.0, 3.0]).show(ui, |ui| {
+        for (of, models) in [(FileScope::Physics, "physics models"), (FileScope::Identified, "identified models")] {
+            let declared = rules.declarations.iter().find(|declared| declared.of == of);
+            let declared = declared.map(|declared| declared.channels.clone()).unwrap_or_default();
+            let name = format!("Units of {models}");
+            ui.label(palette.small(name.to_lowercase()));
+            if let Some(text) = entry_ui(ui, &name, &unit_words(&declared.units), "LON in", 160.0) {
+                commands.push(match units_of(&text) {
+                    Ok(units) => assembly.changed(|rules| {
+                        let declared = rules.declarations_mut(of.clone());
+                        declared.factors.retain(|channel, _| !units.contains_key(channel));
+                        declared.units = units;
+                    }),
+                    Err(why) => Command::Refuse(format!("{name}: {why}")),
+                });
+            }
+            ui.end_row();
+            let name = format!("Factors of {models}");
+            ui.label(palette.small(name.to_lowercase()));
+            if let Some(text) = entry_ui(ui, &name, &trim_words(&declared.factors), "LON 8", 160.0) {
+                commands.push(match factors_of(&text) {
+                    Ok(factors) => assembly.changed(|rules| {
+                        let declared = rules.declarations_mut(of.clone());
+                        declared.units.retain(|channel, _| !factors.contains_key(channel));
+                        declared.factors = factors;
+                    }),
                     Err(why) => Command::Refuse(format!("{name}: {why}")),
                 });
             }

@@ -14,6 +14,8 @@ pub struct Part {
     pub found: FoundModel,
     /// What it is to be.
     pub row: Row,
+    /// What its inputs and outputs are called: by the rules, by the file, or by the file's name.
+    pub labels: [Vec<ChannelLabel>; 2],
     /// Its inputs in the dataset's order.
     pub inputs: ChannelMatch,
     /// Its outputs in the dataset's order.
@@ -94,9 +96,10 @@ impl Assembly {
 
     /// A problem in words, with the model that has it.
     pub fn words(&self, problem: &Problem) -> String {
+        let option = problem.option().map_or_else(String::new, |option| format!(" ({option})"));
         match problem.part {
-            Some(part) => format!("{}: {}", self.parts[part].found.key(), problem.kind),
-            None => problem.kind.to_string(),
+            Some(part) => format!("{}: {}{option}", self.parts[part].found.key(), problem.kind),
+            None => format!("{}{option}", problem.kind),
         }
     }
 
@@ -104,7 +107,8 @@ impl Assembly {
     pub fn told(&self) -> Vec<(Option<usize>, String)> {
         let mut kinds: Vec<(&Problem, usize)> = Vec::new();
         for problem in &self.problems {
-            match kinds.iter_mut().find(|(known, _)| known.kind == problem.kind) {
+            let is_same = |known: &Problem| known.kind == problem.kind && known.scope == problem.scope;
+            match kinds.iter_mut().find(|(known, _)| is_same(known)) {
                 Some((_, count)) => *count += 1,
                 None => kinds.push((problem, 1)),
             }
@@ -168,7 +172,10 @@ impl Assembly {
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
         }
         let conditions = by_condition(&self.parts);
-        problems.extend(conditions.iter().flat_map(|(condition, parts)| problems_of_condition(*condition, parts)));
+        for (condition, parts) in &conditions {
+            problems.extend(problems_of_condition(*condition, parts, &self.rules));
+        }
+        find_scopes(&mut problems, &self.parts, &self.rules);
         if problems.is_empty()
             && let Err(error) = merged(&self.rules, &self.parts).checked()
         {
@@ -247,25 +254,35 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     let said = rules.rows.get(&found.key());
     // A measured response may be one of several files that belong together.
     let partial = found.draft.response.is_some();
-    let signs = rules.signs_of(&found.key(), row.role);
+    let declared = rules.declared(&found, row.role);
+    let known = KnownChannels::Dataset { inputs: &rules.inputs, outputs: &rules.outputs };
+    let named = found.labels_with_name(known);
+    let mut labels = named.labels;
+    let [of_inputs, of_outputs] = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
+    for (labels, names) in labels.iter_mut().zip([of_inputs, of_outputs]) {
+        for (label, name) in labels.iter_mut().zip(names.into_iter().flatten()) {
+            label.name = Some(name.clone());
+        }
+    }
     let matched = |side, labels: &[ChannelLabel], names: Option<&Vec<String>>, channels: &[ChannelRule]| {
-        let named = |(index, label): (usize, &ChannelLabel)| ChannelLabel {
-            name: names.and_then(|names| names.get(index)).cloned().or_else(|| label.name.clone()),
-            unit: label.unit.clone(),
-        };
-        let labels: Vec<ChannelLabel> = labels.iter().enumerate().map(named).collect();
-        let mut matched = ChannelMatch::of(side, &labels, channels, (&rules.units, &signs), partial);
+        let mut matched = ChannelMatch::of(side, labels, channels, &declared, partial);
         if let Some(names) = names.filter(|names| names.len() != labels.len()) {
             matched.problems.push(ProblemKind::Names { side, said: names.len(), found: labels.len() });
         }
         matched
     };
-    let [of_inputs, of_outputs] = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
-    let inputs = matched(ChannelSide::Input, &found.inputs, of_inputs, &rules.inputs);
-    let outputs = matched(ChannelSide::Output, &found.outputs, of_outputs, &rules.outputs);
+    let mut inputs = matched(ChannelSide::Input, &labels[0], of_inputs, &rules.inputs);
+    let mut outputs = matched(ChannelSide::Output, &labels[1], of_outputs, &rules.outputs);
+    if let Some(problem) = named.problem.filter(|_| of_inputs.is_none() || of_outputs.is_none()) {
+        // It says why the channels below match nothing.
+        let is_unmatched = |kind: &ProblemKind| matches!(kind, ProblemKind::ResponseUnmatched { .. });
+        inputs.problems.retain(|kind| !is_unmatched(kind));
+        outputs.problems.retain(|kind| !is_unmatched(kind));
+        inputs.problems.push(problem);
+    }
     let sample_time_s = said.and_then(|said| said.sample_time_s).or(rules.sample_time_s);
     let sample_time_s = sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
-    Part { found, row, inputs, outputs, sample_time_s }
+    Part { found, row, labels, inputs, outputs, sample_time_s }
 }
 
 // The unchecked dataset of models that are said to be what, each in the channels and units of the dataset.
@@ -280,7 +297,7 @@ pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
         outputs: rules.outputs.iter().map(channel).collect(),
         on_axis: rules.on_axis.clone(),
         band: rules.band,
-        conditions: by_condition(parts).into_iter().map(|(id, parts)| condition_of(id, &parts)).collect(),
+        conditions: by_condition(parts).into_iter().map(|(id, parts)| condition_of(id, &parts, rules)).collect(),
     }
 }
 
@@ -295,7 +312,7 @@ fn by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<(usize, &Part)>> {
     conditions
 }
 
-fn condition_of(id: i64, parts: &[(usize, &Part)]) -> ConditionDraft {
+fn condition_of(id: i64, parts: &[(usize, &Part)], rules: &Rules) -> ConditionDraft {
     let parts: Vec<&Part> = parts.iter().map(|(_, part)| *part).collect();
     let parts = parts.as_slice();
     fn said<T: Clone>(parts: &[&Part], of: impl Fn(&Row) -> &Option<T>) -> Option<T> {
@@ -322,7 +339,7 @@ fn condition_of(id: i64, parts: &[(usize, &Part)]) -> ConditionDraft {
     ConditionDraft {
         flight_state: state,
         physics: physics.iter().map(|part| physics_model(part, &coordinates)).collect(),
-        identified: identified_models(&of_role(&[RowRole::Identified])),
+        identified: identified_models(&of_role(&[RowRole::Identified]), rules),
         records: records_of(parts),
     }
 }
@@ -376,7 +393,7 @@ fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
 }
 
 /// Measured responses of one name are one model.
-fn identified_models(parts: &[&Part]) -> Vec<ModelDraft> {
+fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
     let mut models: Vec<ModelDraft> = Vec::new();
     for part in parts {
         let model = ModelDraft { origin: identified_origin(part), ..model_of(part) };
@@ -386,7 +403,34 @@ fn identified_models(parts: &[&Part]) -> Vec<ModelDraft> {
             _ => models.push(model),
         }
     }
+    models.iter_mut().for_each(|model| note_unmeasured(model, rules));
     models
+}
+
+/// Notes the responses that no file of a measured model gives; where all are given over all frequencies, valid bands say nothing.
+fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
+    let Some(response) = &mut model.response else { return };
+    let last = response.omega.last().copied().unwrap_or(0.0);
+    let Some(bands) = response.valid_bands.as_ref() else { return };
+    if bands.values.chunks(2).all(|band| band == [0.0, last]) {
+        response.valid_bands = None;
+        return;
+    }
+    let mut unmeasured = Vec::new();
+    for (place, band) in bands.values.chunks(2).enumerate() {
+        let output = rules.outputs.get(place / rules.inputs.len().max(1));
+        let input = rules.inputs.get(place % rules.inputs.len().max(1));
+        if let (Some(output), Some(input)) = (output, input)
+            && band == NOT_MEASURED
+        {
+            unmeasured.push(format!("{}/{}", output.name, input.name));
+        }
+    }
+    if !unmeasured.is_empty() {
+        let source = model.source.get_or_insert_with(Provenance::default);
+        let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
+        source.note = Some(format!("{note}not measured: {}", unmeasured.join(", ")));
+    }
 }
 
 fn identified_origin(part: &Part) -> Origin {
@@ -397,20 +441,35 @@ fn identified_origin(part: &Part) -> Origin {
     Origin::Identified { method: part.row.method.clone(), order: order.filter(|_| part.found.response().is_some()) }
 }
 
+/// The valid band of a response that was not measured \[rad/s\]: no frequency lies in it.
+const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
+
+/// The valid bands of a response; the whole of its frequencies where it has none.
+fn bands_or_whole(response: &ResponseDraft) -> ResponseArray {
+    let [outputs, inputs, _] = response.re.shape;
+    let last = response.omega.last().copied().unwrap_or(0.0);
+    let whole = || ResponseArray { shape: [outputs, inputs, 2], values: [0.0, last].repeat(outputs * inputs) };
+    response.valid_bands.clone().unwrap_or_else(whole)
+}
+
 /// Puts the responses that `response` has, and the earlier model has not, into it.
 fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     let Some(into) = &mut earlier.response else { return };
     let count = into.omega.len();
+    let given = bands_or_whole(response);
+    let mut known = bands_or_whole(into);
     for place in 0..into.re.shape[0] * into.re.shape[1] {
-        let range = place * count..(place + 1) * count;
-        let is_given = |of: &ResponseDraft| range.clone().any(|at| of.re.values[at] != 0.0 || of.im.values[at] != 0.0);
-        if !is_given(response) || is_given(into) {
+        let band = 2 * place..2 * place + 2;
+        if given.values[band.clone()] == NOT_MEASURED || known.values[band.clone()] != NOT_MEASURED {
             continue;
         }
+        let range = place * count..(place + 1) * count;
         into.re.values[range.clone()].copy_from_slice(&response.re.values[range.clone()]);
         into.im.values[range.clone()].copy_from_slice(&response.im.values[range.clone()]);
+        known.values[band.clone()].copy_from_slice(&given.values[band]);
         join_coherence(into, response, range);
     }
+    into.valid_bands = Some(known);
     if let Some(source) = &mut earlier.source {
         let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
         source.note = Some(format!("{note}with {}", part.found.key()));
@@ -468,13 +527,18 @@ pub(super) fn converted(
 ) -> ModelDraft {
     let [a, b, c, d] = &model.matrices;
     let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
-    let response = model.response.as_ref().map(|response| ResponseDraft {
-        omega: response.omega.clone(),
-        re: table(&response.re, true),
-        im: table(&response.im, true),
-        coherence: response.coherence.as_ref().map(|array| table(array, false)),
-        valid_bands: response.valid_bands.as_ref().map(|array| table(array, false)),
-        estimate: response.estimate,
+    let is_whole = inputs.iter().chain(outputs).all(Option::is_some);
+    let response = model.response.as_ref().map(|response| {
+        // A response that was not measured is valid nowhere: its zeros are no numbers of the model.
+        let valid_bands = if is_whole { response.valid_bands.clone() } else { Some(bands_or_whole(response)) };
+        ResponseDraft {
+            omega: response.omega.clone(),
+            re: table(&response.re, true),
+            im: table(&response.im, true),
+            coherence: response.coherence.as_ref().map(|array| table(array, false)),
+            valid_bands: valid_bands.map(|array| table(&array, false)),
+            estimate: response.estimate,
+        }
     });
     let timing = Timing {
         sample_time_s: model.timing.sample_time_s,
@@ -574,6 +638,45 @@ mod tests {
         assert_eq!(turned.timing.input_delays_s, Some(vec![0.2, 0.1]));
         let same = converted(&model, &[used(0, 1.0), used(1, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
         assert_eq!(same, model);
+    }
+
+    /// A measured response of 2 outputs and 1 input at 2 frequencies.
+    fn measured(values: &[f64]) -> ModelDraft {
+        let array = |values: &[f64]| ResponseArray { shape: [values.len() / 2, 1, 2], values: values.to_vec() };
+        let response = ResponseDraft {
+            omega: vec![1.0, 5.0],
+            re: array(values),
+            im: array(&vec![0.0; values.len()]),
+            coherence: None,
+            valid_bands: None,
+            estimate: Default::default(),
+        };
+        ModelDraft {
+            name: "measured".into(),
+            origin: Origin::Identified { method: None, order: None },
+            matrices: [None, None, None, None],
+            timing: Timing::default(),
+            response: Some(response),
+            source: None,
+            states: Vec::new(),
+            bands: None,
+        }
+    }
+
+    #[test]
+    fn a_response_that_no_file_gives_is_marked_as_not_measured_and_noted() {
+        let rules = Rules {
+            inputs: vec![ChannelRule::named("LON")],
+            outputs: vec![ChannelRule::named("Q"), ChannelRule::named("P")],
+            ..Rules::default()
+        };
+        let mut of_one = converted(&measured(&[3.0, 4.0]), &[used(0, 1.0)], &[None, used(0, 1.0)]);
+        note_unmeasured(&mut of_one, &rules);
+        assert_eq!(of_one.response.unwrap().valid_bands.unwrap().values, [0.0, 0.0, 0.0, 5.0]);
+        assert_eq!(of_one.source.unwrap().note.as_deref(), Some("not measured: Q/LON"));
+        let mut whole = converted(&measured(&[1.0, 2.0, 3.0, 4.0]), &[used(0, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
+        note_unmeasured(&mut whole, &rules);
+        assert_eq!((whole.response.unwrap().valid_bands, whole.source), (None, None));
     }
 
     /// A model of one input and one output in a file, with matrices.

@@ -27,20 +27,21 @@ pub struct ChannelMatch {
 }
 
 impl ChannelMatch {
-    /// Matches the channels of one side; `said` are the signs that are said of channels, `partial` lets
-    /// channels be missing.
+    /// Matches the channels of one side; `partial` lets channels be missing, but not all of them.
     pub fn of(
         side: ChannelSide,
         labels: &[ChannelLabel],
         rules: &[ChannelRule],
-        (units, said): (&[UnitRule], &BTreeMap<String, f64>),
+        declared: &DeclaredChannels<'_>,
         partial: bool,
     ) -> Self {
         let mut found = Self::default();
         let unnamed = !labels.is_empty() && labels.iter().all(|label| label.name.is_none());
         if unnamed && labels.len() != rules.len() {
-            let (expected, count) = (rules.len(), labels.len());
-            found.problems.push(ProblemKind::Unnamed { side, expected, found: count });
+            found.problems.push(match partial {
+                true => unmatched(side, labels, rules),
+                false => ProblemKind::Unnamed { side, expected: rules.len(), found: labels.len() },
+            });
             found.uses = vec![None; rules.len()];
             return found;
         }
@@ -50,10 +51,23 @@ impl ChannelMatch {
         for (place, rule) in rules.iter().enumerate() {
             let index = if unnamed { Some(place) } else { found.find(side, labels, rule, partial) };
             let used = index.map(|index| {
-                let used = found.used(index, &labels[index], rule, units);
-                found.signed(used, labels[index].name.as_deref(), rule, said.get(&rule.name).copied())
+                let used = found.used(index, &labels[index], rule, declared);
+                found.signed(used, labels[index].name.as_deref(), rule, declared.sign_of(&rule.name))
             });
             found.uses.push(used);
+        }
+        let is_used = |index: usize| found.uses.iter().flatten().any(|used| used.index == index);
+        let unused: Vec<&str> = labels
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| !is_used(*index))
+            .filter_map(|(_, label)| label.name.as_deref())
+            .collect();
+        if found.problems.is_empty() && !unused.is_empty() {
+            found.notes.push(format!("{side}s of the file that the dataset does not have: {}", unused.join(", ")));
+        }
+        if partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
+            found.problems.push(unmatched(side, labels, rules));
         }
         found
     }
@@ -123,21 +137,39 @@ impl ChannelMatch {
         ChannelUse { factor: -used.factor, words: Some(words), ..used }
     }
 
-    fn used(&mut self, index: usize, label: &ChannelLabel, rule: &ChannelRule, units: &[UnitRule]) -> ChannelUse {
-        let said = label.unit.as_deref().filter(|unit| !unit.trim().is_empty());
+    fn used(
+        &mut self,
+        index: usize,
+        label: &ChannelLabel,
+        rule: &ChannelRule,
+        declared: &DeclaredChannels<'_>,
+    ) -> ChannelUse {
+        if let Some(factor) = declared.channels.factors.get(&rule.name) {
+            let words = Some(format!("{} × {}, as declared", rule.name, number(*factor)));
+            return ChannelUse { index, factor: *factor, words };
+        }
+        let of_file = label.unit.as_deref().filter(|unit| !unit.trim().is_empty());
+        let of_rules = declared.channels.units.get(&rule.name).map(String::as_str);
+        if let (Some(of_rules), Some(of_file)) = (of_rules, of_file)
+            && of_rules != of_file
+        {
+            self.notes.push(format!("{}: declared to be in {of_rules}, although the file says {of_file}", rule.name));
+        }
+        let said = of_rules.or(of_file);
         let from = said.or(rule.unit_in_files.as_deref());
         let Some(from) = from else {
             self.problems.push(ProblemKind::UnitOfFile(rule.name.clone()));
             return ChannelUse { index, factor: 1.0, words: None };
         };
+        let mut conversions = declared.conversions.iter();
         let by_rule =
-            units.iter().find(|of| of.channel == rule.name && of.from.trim() == from.trim()).map(|of| of.factor);
+            conversions.find(|of| of.channel == rule.name && of.from.trim() == from.trim()).map(|of| of.factor);
         let Some(factor) = by_rule.or_else(|| conversion_factor(from, &rule.unit)) else {
             let (channel, to) = (rule.name.clone(), rule.unit.clone());
             self.problems.push(ProblemKind::Conversion { channel, from: from.to_owned(), to });
             return ChannelUse { index, factor: 1.0, words: None };
         };
-        let words = match (factor == 1.0, said) {
+        let words = match (factor == 1.0, of_file) {
             (true, Some(_)) => None,
             (true, None) => Some(format!("{} taken to be in {from}", rule.name)),
             (false, _) => Some(format!("{} {from} → {} (× {factor})", rule.name, rule.unit)),
@@ -146,14 +178,22 @@ impl ChannelMatch {
     }
 }
 
+/// A measured response none of whose channels on a side is one of the dataset.
+fn unmatched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule]) -> ProblemKind {
+    let found: Vec<&str> = labels.iter().filter_map(|label| label.name.as_deref()).collect();
+    let known: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
+    ProblemKind::ResponseUnmatched { side, found: found.join(", "), known: known.join(", ") }
+}
+
 // Names of channels, of the time and of the sample time, however files write them.
 
 /// What each channel is called, all folded (see [`folded_name`]), the first name standing for the others; those such as "elevyoke1" are a
 /// flight simulator's. A name stands in one row only.
 const ALIASES: [&str; 16] = [
     "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
-     pitchstick elevator loncyc longstick elevyoke1",
-    "lat lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick ailrnyoke1",
+     pitchstick elevator loncyc lonstick longstick loncyclic cycliclon longitudinalcyclic longitudinalstick elevyoke1",
+    "lat lateral latcyc cyclat dlat deltalat da deltaa xa xlat a1s theta1c rollstick aileron latstick latcyclic cycliclat \
+     lateralcyclic lateralstick ailrnyoke1",
     "ped pedal pedals dped deltaped dp deltap dr deltar xp xped thetatr thetat rudder tailrotor yawpedal ruddryoke1",
     "col coll collective dcol deltacol dcoll dc deltac xc xcol theta0 theta0m",
     "p rollrate pb pbody omegax",
@@ -169,6 +209,14 @@ const ALIASES: [&str; 16] = [
     "theta pitch pitchangle pitchattitude",
     "psi yaw heading yawangle",
 ];
+
+/// The first rows of the names of the field are those of inputs.
+pub(super) const FIELD_INPUTS: usize = 4;
+
+/// The names of each channel that the field has names for, folded.
+pub(super) fn field_names() -> impl Iterator<Item = std::str::Split<'static, char>> {
+    ALIASES.iter().map(|row| row.split(' '))
+}
 
 /// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa", "Sample_Time" is "sampletime".
 pub fn folded_name(name: &str) -> String {
@@ -188,10 +236,9 @@ pub fn folded_name(name: &str) -> String {
 }
 
 /// The name that stands for all that call the same channel.
-fn canonical(name: &str) -> String {
+pub(super) fn canonical(name: &str) -> String {
     let name = folded_name(name);
-    let mut rows = ALIASES.iter().map(|row| row.split(' '));
-    let first = rows.find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
+    let first = field_names().find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
     first.map_or_else(|| name.clone(), str::to_owned)
 }
 
@@ -310,8 +357,9 @@ pub fn time_name_rank(name: &str) -> Option<u8> {
 mod tests {
     use super::*;
 
-    fn none() -> BTreeMap<String, f64> {
-        BTreeMap::new()
+    /// The channels of one side under rules that declare nothing else.
+    fn matched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule], partial: bool) -> ChannelMatch {
+        ChannelMatch::of(side, labels, rules, &DeclaredChannels::default(), partial)
     }
 
     fn rule(name: &str, unit: &str) -> ChannelRule {
@@ -326,7 +374,7 @@ mod tests {
     fn channels_are_found_by_name_in_whatever_order_and_converted() {
         let rules = [rule("P", "deg/s"), rule("NZ", "m/s^2")];
         let labels = [label("nz", "g"), label("roll rate", "rad/s"), label("q", "rad/s")];
-        let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &none()), false);
+        let found = matched(ChannelSide::Output, &labels, &rules, false);
         assert!(found.problems.is_empty(), "{:?}", found.problems);
         let uses: Vec<(usize, f64)> = found.uses.iter().flatten().map(|used| (used.index, used.factor)).collect();
         assert_eq!(uses, [(1, 180.0 / std::f64::consts::PI), (0, 9.806_65)]);
@@ -335,13 +383,14 @@ mod tests {
     #[test]
     fn a_unit_that_is_not_said_is_asked_for_and_never_guessed() {
         let rules = [rule("LON", "%")];
-        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &rules, (&[], &none()), false);
+        let found = matched(ChannelSide::Input, &[label("lon", "")], &rules, false);
         assert_eq!(found.problems, [ProblemKind::UnitOfFile("LON".into())]);
         let said = [ChannelRule { unit_in_files: Some("in".into()), ..rule("LON", "%") }];
-        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[], &none()), false);
+        let found = matched(ChannelSide::Input, &[label("lon", "")], &said, false);
         assert!(matches!(&found.problems[..], [ProblemKind::Conversion { .. }]));
         let factor = UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.5 };
-        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, (&[factor], &none()), false);
+        let declared = DeclaredChannels { conversions: &[factor], ..DeclaredChannels::default() };
+        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, &declared, false);
         assert_eq!(found.uses[0].as_ref().map(|used| used.factor), Some(8.5));
     }
 
@@ -349,9 +398,9 @@ mod tests {
     fn channels_without_names_are_taken_in_order_only_if_there_are_as_many() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
         let unnamed = |count| vec![ChannelLabel { name: None, unit: Some("%".into()) }; count];
-        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(2), &rules, (&[], &none()), false);
+        let found = matched(ChannelSide::Input, &unnamed(2), &rules, false);
         assert!(found.problems.is_empty() && found.by_position);
-        let found = ChannelMatch::of(ChannelSide::Input, &unnamed(3), &rules, (&[], &none()), false);
+        let found = matched(ChannelSide::Input, &unnamed(3), &rules, false);
         assert_eq!(found.problems, [ProblemKind::Unnamed { side: ChannelSide::Input, expected: 2, found: 3 }]);
     }
 
@@ -359,10 +408,10 @@ mod tests {
     fn two_channels_that_can_be_the_same_are_asked_about_unless_one_has_the_very_name() {
         let rules = [rule("P", "deg/s")];
         let both = [label("p", "deg/s"), label("roll rate", "deg/s")];
-        let found = ChannelMatch::of(ChannelSide::Output, &both, &rules, (&[], &none()), false);
+        let found = matched(ChannelSide::Output, &both, &rules, false);
         assert!(matches!(&found.problems[..], [ProblemKind::AmbiguousChannel { .. }]));
         let exact = [label("P", "deg/s"), label("roll rate", "deg/s")];
-        assert!(ChannelMatch::of(ChannelSide::Output, &exact, &rules, (&[], &none()), false).problems.is_empty());
+        assert!(matched(ChannelSide::Output, &exact, &rules, false).problems.is_empty());
     }
 
     #[test]
@@ -370,8 +419,10 @@ mod tests {
         let rules = [rule("NZ", "m/s2"), ChannelRule { aliases: vec!["-yaw".into()], ..rule("R", "deg/s") }];
         let factors = |name: &str, said: &[(&str, f64)]| {
             let labels = [label(name, "m/s2"), label("yaw", "deg/s")];
-            let said = said.iter().map(|(name, sign)| ((*name).to_owned(), *sign)).collect();
-            let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, (&[], &said), false);
+            let signs = said.iter().map(|(name, sign)| ((*name).to_owned(), *sign)).collect();
+            let channels = ChannelDeclarations { signs, ..ChannelDeclarations::default() };
+            let declared = DeclaredChannels { channels, ..DeclaredChannels::default() };
+            let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, &declared, false);
             (found.uses.iter().flatten().map(|used| used.factor).collect::<Vec<_>>(), found.problems)
         };
         let asked = ProblemKind::Sign { channel: "NZ".into(), found: "az".into() };
@@ -380,6 +431,44 @@ mod tests {
         assert_eq!(factors("-az", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("nz (down)", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("NZ", &[]), (vec![1.0, -1.0], vec![]));
+    }
+
+    #[test]
+    fn a_declared_unit_or_factor_goes_before_the_file_s_and_a_factor_is_all_that_is_done() {
+        let rules = [ChannelRule { unit_in_files: Some("deg/s".into()), ..rule("R", "deg/s") }];
+        let factor_of = |label: ChannelLabel, channels: ChannelDeclarations| {
+            let declared = DeclaredChannels { channels, ..DeclaredChannels::default() };
+            let found = ChannelMatch::of(ChannelSide::Output, &[label], &rules, &declared, false);
+            assert!(found.problems.is_empty(), "{:?}", found.problems);
+            found.uses[0].as_ref().map(|used| used.factor)
+        };
+        let unit = |unit: &str| ChannelDeclarations {
+            units: [("R".to_owned(), unit.to_owned())].into(),
+            ..ChannelDeclarations::default()
+        };
+        let factor = |factor: f64, sign: Option<f64>| ChannelDeclarations {
+            factors: [("R".to_owned(), factor)].into(),
+            signs: sign.map(|sign| ("R".to_owned(), sign)).into_iter().collect(),
+            ..ChannelDeclarations::default()
+        };
+        let per_radian = Some(180.0 / std::f64::consts::PI);
+        assert_eq!(factor_of(label("r", ""), ChannelDeclarations::default()), Some(1.0));
+        assert_eq!(factor_of(label("r", ""), unit("rad/s")), per_radian);
+        assert_eq!(factor_of(label("r", "deg/s"), unit("rad/s")), per_radian);
+        assert_eq!(factor_of(label("-r", "rad/s"), factor(25.0, None)), Some(25.0), "the factor has the sign");
+        assert_eq!(factor_of(label("r", "rad/s"), factor(25.0, Some(-1.0))), Some(-25.0));
+    }
+
+    #[test]
+    fn a_response_whose_channels_match_nothing_is_a_problem_and_one_that_lacks_some_is_none() {
+        let rules = [rule("LON", "%"), rule("LAT", "%")];
+        let part = matched(ChannelSide::Input, &[label("lat", "%"), label("latt", "%")], &rules, true);
+        assert!(part.problems.is_empty(), "{:?}", part.problems);
+        assert_eq!(part.notes, ["inputs of the file that the dataset does not have: latt"]);
+        for labels in [vec![label("delta", "%"), label("run2", "%")], vec![ChannelLabel::default()]] {
+            let nothing = matched(ChannelSide::Input, &labels, &rules, true);
+            assert!(matches!(&nothing.problems[..], [ProblemKind::ResponseUnmatched { .. }]), "{labels:?}");
+        }
     }
 
     #[test]

@@ -71,9 +71,45 @@ impl FoundModel {
         }
     }
 
-    /// Its inputs or its outputs.
-    fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
-        side.of(&self.inputs, &self.outputs)
+    /// What its channels are called. Where the file says nothing of the channels of one measured response, its variable does, or else
+    /// its name, as far as they name channels that are known.
+    pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
+        let mut named = NamedLabels { labels: [self.inputs.clone(), self.outputs.clone()], problem: None };
+        if self.response().is_none() || self.inputs.len() != 1 || self.outputs.len() != 1 {
+            return named;
+        }
+        let stem = without_extension(self.file()).rsplit('/').next().unwrap_or_default().to_owned();
+        for text in [self.variable(), stem.as_str()] {
+            if named.labels.iter().all(|labels| labels[0].name.is_some()) {
+                break;
+            }
+            let of_name = ResponseName::find(text, known).and_then(|found| {
+                // A channel of the field that the dataset does not have is no other one.
+                let of_field = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
+                Ok(ResponseName { output: found.output.or(of_field.output), input: found.input.or(of_field.input) })
+            });
+            match of_name {
+                Ok(ResponseName { output, input }) => {
+                    for (labels, name) in named.labels.iter_mut().zip([input, output]) {
+                        labels[0].name = labels[0].name.take().or(name);
+                    }
+                }
+                Err(error) => {
+                    let name = text.to_owned();
+                    named.problem = named.problem.or(Some(ProblemKind::ResponseName { name, error }));
+                }
+            }
+        }
+        if named.labels.iter().all(|labels| labels[0].name.is_some()) {
+            named.problem = None;
+        }
+        named
+    }
+
+    /// The same model, its channels named by its file's name where only that says what they are, as far as the field has names for them.
+    pub fn with_names_of_file(mut self) -> Self {
+        [self.inputs, self.outputs] = self.labels_with_name(KnownChannels::Field).labels;
+        self
     }
 
     /// The measured response, where it is one.
@@ -92,6 +128,15 @@ impl FoundModel {
             (None, None) => channels,
         }
     }
+}
+
+/// What the channels of a model are called, and what is not clear in the name that says it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedLabels {
+    /// Inputs and outputs.
+    pub labels: [Vec<ChannelLabel>; 2],
+    /// Why the name of the file or of the variable does not say it.
+    pub problem: Option<ProblemKind>,
 }
 
 /// The role of a model in its condition.
@@ -195,7 +240,9 @@ pub fn standard_on_axis(output: &str, input: &str) -> bool {
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
 /// a helicopter as far as there are such channels. What the files do not say stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
-    let (inputs, outputs) = (channels(models, ChannelSide::Input), channels(models, ChannelSide::Output));
+    let models: Vec<LabelledModel<'_>> = models.iter().map(LabelledModel::of).collect();
+    let inputs = channels(&models, ChannelSide::Input);
+    let outputs = channels(&models, ChannelSide::Output);
     let find = |channels: &[ChannelRule], name: &str| {
         channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
     };
@@ -204,38 +251,86 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     Rules { name: name.to_owned(), inputs, outputs, on_axis, ..Rules::default() }
 }
 
+/// A model and what its channels are called, by the file or by its name.
+struct LabelledModel<'m> {
+    found: &'m FoundModel,
+    labels: [Vec<ChannelLabel>; 2],
+}
+
+impl<'m> LabelledModel<'m> {
+    fn of(found: &'m FoundModel) -> Self {
+        Self { found, labels: found.labels_with_name(KnownChannels::Field).labels }
+    }
+
+    fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
+        let [inputs, outputs] = &self.labels;
+        side.of(inputs, outputs)
+    }
+}
+
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
-fn channels(models: &[FoundModel], side: ChannelSide) -> Vec<ChannelRule> {
-    let named = |model: &FoundModel| model.labels(side).iter().filter(|label| label.name.is_some()).count();
-    let mut order: Vec<&FoundModel> = models.iter().collect();
+fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
+    let named = |model: &LabelledModel<'_>| model.labels(side).iter().filter(|label| label.name.is_some()).count();
+    let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
     order.sort_by_key(|model| std::cmp::Reverse(named(model)));
-    let first_is_measured = order.first().is_some_and(|model| model.response().is_some());
+    let first_is_measured = order.first().is_some_and(|model| model.found.response().is_some());
     let mut channels: Vec<ChannelRule> = Vec::new();
+    let mut units: Vec<ProposedUnits> = Vec::new();
     for model in order {
         // Models with matrices have all channels of the dataset; measured responses may have one each.
-        let is_open = channels.is_empty() || (model.response().is_some() && first_is_measured);
+        let is_open = channels.is_empty() || (model.found.response().is_some() && first_is_measured);
         for label in model.labels(side) {
             // The dataset's channel has the name without the marks of a sign.
             let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else { continue };
-            let name = &name;
-            let unit = label.unit.clone().unwrap_or_default();
-            let known = channels.iter().position(|channel| same_channel(&channel.name, name));
-            match known.map(|known| &mut channels[known]) {
-                Some(known) if known.unit.is_empty() => known.unit = unit,
-                Some(_) => {}
-                None if is_open => channels.push(ChannelRule { unit, ..ChannelRule::named(name) }),
-                None => {}
+            let known = channels.iter().position(|channel| same_channel(&channel.name, &name));
+            let index = known.unwrap_or(channels.len());
+            if known.is_none() {
+                if !is_open {
+                    continue;
+                }
+                channels.push(ChannelRule::named(name));
+                units.push(ProposedUnits::default());
+            }
+            if let Some(unit) = label.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
+                units[index].count(unit, model.found.file());
             }
         }
     }
+    for (channel, units) in channels.iter_mut().zip(units) {
+        channel.unit = units.of_most_files();
+    }
     // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
-    let all_unnamed = models.iter().filter(|model| model.response().is_none()).all(|model| named(model) == 0);
+    let all_unnamed = models.iter().filter(|model| model.found.response().is_none()).all(|model| named(model) == 0);
     if channels.is_empty() || all_unnamed {
         let count = models.iter().map(|model| model.labels(side).len()).max().unwrap_or(0);
         let missing = channels.len() + 1..=count;
         channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
     }
     channels
+}
+
+/// The units that files give a channel, each with its files.
+#[derive(Default)]
+struct ProposedUnits<'m> {
+    units: Vec<(&'m str, BTreeSet<&'m str>)>,
+}
+
+impl<'m> ProposedUnits<'m> {
+    fn count(&mut self, unit: &'m str, file: &'m str) {
+        // "deg/s" and "°/s" are one unit.
+        let same = self.units.iter_mut().find(|(known, _)| conversion_factor(known, unit) == Some(1.0));
+        match same {
+            Some((_, files)) => drop(files.insert(file)),
+            None => self.units.push((unit, [file].into())),
+        }
+    }
+
+    /// The unit of most files, the first of those of as many; empty where no file says one.
+    fn of_most_files(&self) -> String {
+        let most = self.units.iter().map(|(_, files)| files.len()).max();
+        let unit = self.units.iter().find(|(_, files)| Some(files.len()) == most);
+        unit.map(|(unit, _)| (*unit).to_owned()).unwrap_or_default()
+    }
 }
 
 /// What names, contents and rules say of each model.

@@ -9,9 +9,11 @@
 #[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
 mod assembly;
 mod channel_match;
+mod declarations;
 mod found_model;
 mod physical_unit;
 mod problem;
+mod response_name;
 mod rules;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +26,9 @@ use crate::units::number;
 
 pub use assembly::*;
 pub use channel_match::*;
+pub use declarations::*;
 pub use found_model::*;
 pub use physical_unit::*;
 pub use problem::*;
+pub use response_name::*;
 pub use rules::*;

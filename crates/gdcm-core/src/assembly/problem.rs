@@ -41,8 +41,7 @@ pub enum ProblemKind {
     },
     /// A channel that the file calls by a name which leaves the sign open.
     #[error(
-        "{channel} is called {found} in the file, which can be positive the other way: say its sign, 1 or -1 (\"signs\" in the rules, \
-         --sign {channel}=-1:all)"
+        "{channel} is called {found} in the file, which can be positive the other way: say its sign, 1 or -1 (\"signs\" in the rules)"
     )]
     Sign {
         /// The channel of the dataset.
@@ -83,6 +82,46 @@ pub enum ProblemKind {
         expected: usize,
         /// How many the model has.
         found: usize,
+    },
+    /// A measured response none of whose channels is one of the dataset.
+    #[error(
+        "no {side} of the measured response is one of the dataset ({known}): {}. Say it in its headings, \"mag Q/LON [dB]\" (--headings, or \
+         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave it out",
+        if found.is_empty() { "neither the file nor its name says one".to_owned() } else { format!("it has {found}") }
+    )]
+    ResponseUnmatched {
+        /// Input or output.
+        side: ChannelSide,
+        /// The channels that the file names; empty where it names none.
+        found: String,
+        /// The channels of the dataset.
+        known: String,
+    },
+    /// A measured response whose channels only the name of its file or variable says, and that not clearly.
+    #[error(
+        "the name \"{name}\" does not say one output and one input: {error}. Say them in the headings, \"mag Q/LON [dB]\" (--headings, or \
+         \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
+    )]
+    ResponseName {
+        /// The name of the file or of the variable.
+        name: String,
+        /// What is not clear.
+        error: ResponseNameError,
+    },
+    /// Two files give the same response of one measured model.
+    #[error(
+        "{output}/{input} of the measured model \"{name}\" is in {first} too; leave one of them out, or give one another name: it is a \
+         model of its own then"
+    )]
+    ResponseTwice {
+        /// The output.
+        output: String,
+        /// The input.
+        input: String,
+        /// The name of the model.
+        name: String,
+        /// The other file.
+        first: String,
     },
     /// More or fewer names are said of a model's channels than it has.
     #[error("{said} names are said for the {found} {side}s of the model; say one for each, in the file's order")]
@@ -175,6 +214,59 @@ fn grid_words((count, [lowest, highest]): (usize, [f64; 2])) -> String {
     format!("{count} from {lowest:.1} to {highest:.1} rad/s")
 }
 
+impl ProblemKind {
+    /// A stable name of the kind, for scripts and tests.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoModels => "no-models",
+            Self::NoChannels(_) => "no-channels",
+            Self::NoUnit(_) => "no-unit",
+            Self::UnitOfFile(_) => "unit-of-file",
+            Self::Conversion { .. } => "conversion",
+            Self::NoChannel { .. } => "no-channel",
+            Self::Sign { .. } => "sign",
+            Self::NoSampleTime { .. } => "no-sample-time",
+            Self::TrimPart(_) => "trim-part",
+            Self::AmbiguousChannel { .. } => "ambiguous-channel",
+            Self::Unnamed { .. } => "unnamed-channels",
+            Self::ResponseUnmatched { .. } => "response-unmatched",
+            Self::ResponseName { .. } => "response-name",
+            Self::ResponseTwice { .. } => "response-twice",
+            Self::Names { .. } => "names",
+            Self::NoCondition => "no-condition",
+            Self::NoRole => "no-role",
+            Self::NoAirspeed => "no-airspeed",
+            Self::Contradiction { .. } => "contradiction",
+            Self::NameContradiction { .. } => "name-contradiction",
+            Self::Nominal { .. } => "nominal",
+            Self::NoIdentified(_) => "no-identified",
+            Self::Name { .. } => "duplicate-name",
+            Self::MeasuredPhysics(_) => "measured-physics",
+            Self::Grids { .. } => "grids",
+            Self::Dataset(_) => "dataset",
+        }
+    }
+
+    /// The channel that is asked about, and the option of `gdcm assemble` that answers, without the models that it is for.
+    fn question(&self) -> Option<Question> {
+        let (channel, option, value) = match self {
+            Self::Sign { channel, .. } => (channel, "--sign", "-1"),
+            Self::UnitOfFile(channel) => (channel, "--unit", "UNIT"),
+            Self::Conversion { channel, .. } => (channel, "--factor", "X"),
+            _ => return None,
+        };
+        Some(Question { channel: channel.clone(), option, value })
+    }
+}
+
+/// A question about a channel that an option answers.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Question {
+    channel: String,
+    option: &'static str,
+    value: &'static str,
+}
+
 /// A problem, and the model that has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -182,18 +274,71 @@ pub struct Problem {
     pub part: Option<usize>,
     /// What it is.
     pub kind: ProblemKind,
+    /// The models that ask the same question of a channel, and no others; none where no option answers it.
+    pub scope: Option<FileScope>,
 }
 
 impl Problem {
     /// A problem of the whole.
     pub fn of_all(kind: ProblemKind) -> Self {
-        Self { part: None, kind }
+        Self { part: None, kind, scope: None }
     }
 
     /// A problem of one model.
     pub fn of(part: usize, kind: ProblemKind) -> Self {
-        Self { part: Some(part), kind }
+        Self { part: Some(part), kind, scope: None }
     }
+
+    /// The option of `gdcm assemble` that answers the question for the models that ask it: "--sign NZ=-1:identified".
+    pub fn option(&self) -> Option<String> {
+        let Question { channel, option, value } = self.kind.question()?;
+        let said = format!("{channel}={value}:{}", self.scope.as_ref()?);
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "=-+_./:#,%".contains(letter);
+        if said.chars().all(is_plain) { Some(format!("{option} {said}")) } else { Some(format!("{option} '{said}'")) }
+    }
+}
+
+/// Says of each question about a channel which models ask it: all, those of a role, or this one file. Models without the channel do not
+/// count.
+pub(super) fn find_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
+    let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
+    for problem in problems.iter() {
+        if let (Some(part), Some(question)) = (problem.part, problem.kind.question()) {
+            asking.entry(question).or_default().insert(part);
+        }
+    }
+    let scope_of = |index: usize| parts[index].row.role.map(FileScope::of_role);
+    let mut asked_by: BTreeMap<&Question, Vec<FileScope>> = BTreeMap::new();
+    for (question, asking) in &asking {
+        let having: Vec<usize> = (0..parts.len())
+            .filter(|index| !parts[*index].row.left_out && has_channel(&parts[*index], &question.channel, rules))
+            .collect();
+        let whole = asked_by.entry(question).or_default();
+        for scope in [FileScope::Physics, FileScope::Identified] {
+            let mut of_role = having.iter().filter(|index| scope_of(**index) == Some(scope.clone())).peekable();
+            if of_role.peek().is_some() && of_role.all(|index| asking.contains(index)) {
+                whole.push(scope);
+            }
+        }
+        if whole.len() == 2 && having.iter().all(|index| asking.contains(index)) {
+            *whole = vec![FileScope::All];
+        }
+    }
+    for problem in problems {
+        let (Some(part), Some(question)) = (problem.part, problem.kind.question()) else { continue };
+        let whole = asked_by.get(&question).map(Vec::as_slice).unwrap_or_default();
+        let own = scope_of(part);
+        let found = whole.iter().find(|scope| **scope == FileScope::All || Some(*scope) == own.as_ref());
+        problem.scope = Some(found.cloned().unwrap_or_else(|| FileScope::Files(parts[part].found.key())));
+    }
+}
+
+fn has_channel(part: &Part, channel: &str, rules: &Rules) -> bool {
+    let has = |rules: &[ChannelRule], matched: &ChannelMatch| {
+        let mut uses = rules.iter().zip(&matched.uses);
+        uses.any(|(rule, used)| rule.name == channel && used.is_some())
+    };
+    has(&rules.inputs, &part.inputs) || has(&rules.outputs, &part.outputs)
 }
 
 pub(super) fn row_problems(part: &Part) -> Vec<ProblemKind> {
@@ -231,7 +376,7 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
 }
 
-pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
+pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec<Problem> {
     let first = parts[0].0;
     let mut kinds = contradictions(condition, parts);
     if parts.iter().all(|(_, part)| part.row.airspeed_kt.is_none()) {
@@ -242,7 +387,7 @@ pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)]) ->
         kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
     }
     let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
-    problems.extend(name_problems(condition, parts));
+    problems.extend(name_problems(condition, parts, rules));
     problems
 }
 
@@ -268,29 +413,54 @@ fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> 
 }
 
 /// Names that stand twice in a bundle; measured responses of one name are parts of one model.
-fn name_problems(condition: i64, parts: &[(usize, &Part)]) -> Vec<Problem> {
-    let mut seen: BTreeMap<(bool, &str), &Part> = BTreeMap::new();
+fn name_problems(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec<Problem> {
+    let mut seen: BTreeMap<(bool, &str), Vec<&Part>> = BTreeMap::new();
     let mut problems = Vec::new();
     for (index, part) in parts {
         let is_identified = part.row.role == Some(RowRole::Identified);
-        let Some(earlier) = seen.insert((is_identified, &part.row.name), part) else { continue };
-        match (earlier.found.response(), part.found.response()) {
-            (Some(a), Some(b)) if a.omega == b.omega => {}
-            (Some(a), Some(b)) => {
+        let earlier = seen.entry((is_identified, &part.row.name)).or_default();
+        let last = earlier.last().copied();
+        let kind = match last.map(|last| (last, last.found.response(), part.found.response())) {
+            None => None,
+            Some((_, Some(a), Some(b))) if a.omega == b.omega => twice_measured(part, earlier, rules),
+            Some((last, Some(a), Some(b))) => {
                 let grid = |of: &ResponseDraft| {
                     let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
                     (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])
                 };
-                let (first, second) = (earlier.found.key(), part.found.key());
-                let kind = ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) };
-                problems.push(Problem::of(*index, kind));
+                let (first, second) = (last.found.key(), part.found.key());
+                Some(ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) })
             }
-            _ => {
+            Some(_) => {
                 let bundle = if is_identified { "identified" } else { "physics" };
-                let name = part.row.name.clone();
-                problems.push(Problem::of(*index, ProblemKind::Name { condition, bundle, name }));
+                Some(ProblemKind::Name { condition, bundle, name: part.row.name.clone() })
+            }
+        };
+        problems.extend(kind.map(|kind| Problem::of(*index, kind)));
+        earlier.push(part);
+    }
+    problems
+}
+
+/// The first response that a part of a measured model has and an earlier one too.
+fn twice_measured(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<ProblemKind> {
+    for (output, of_output) in rules.outputs.iter().enumerate() {
+        for (input, of_input) in rules.inputs.iter().enumerate() {
+            let measures = |part: &Part| {
+                let used = |matched: &ChannelMatch, index: usize| matched.uses.get(index).is_some_and(Option::is_some);
+                used(&part.outputs, output) && used(&part.inputs, input)
+            };
+            if measures(part)
+                && let Some(first) = earlier.iter().find(|part| measures(part))
+            {
+                return Some(ProblemKind::ResponseTwice {
+                    output: of_output.name.clone(),
+                    input: of_input.name.clone(),
+                    name: part.row.name.clone(),
+                    first: first.found.key(),
+                });
             }
         }
     }
-    problems
+    None
 }

@@ -1,5 +1,6 @@
 //! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
+use super::declarations::{declared_of, rename_key};
 use super::*;
 use std::sync::LazyLock;
 
@@ -91,6 +92,12 @@ pub struct RowRule {
     /// Signs of its channels, by their names in the dataset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub signs: Option<Signs>,
+    /// Units of its channels, by their names in the dataset, whatever the file says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub units: Option<BTreeMap<String, String>>,
+    /// Factors of its channels, by their names in the dataset: how many of the dataset's units one of the file's is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factors: Option<BTreeMap<String, f64>>,
     /// Its sample time \[s\], where the file has none; 0 of a continuous-time model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_time_s: Option<f64>,
@@ -129,6 +136,24 @@ impl RowRule {
             row.perturbation.clone_from(perturbation);
         }
     }
+
+    /// Units, factors and signs of its channels.
+    pub fn declarations(&self) -> ChannelDeclarations {
+        ChannelDeclarations {
+            units: self.units.clone().unwrap_or_default(),
+            factors: self.factors.clone().unwrap_or_default(),
+            signs: self.signs.clone().unwrap_or_default(),
+        }
+    }
+
+    /// Puts what is declared of its channels in the place of what was declared of the same channels.
+    pub fn declare(&mut self, declared: &ChannelDeclarations) {
+        let mut all = self.declarations();
+        all.override_by(declared);
+        self.units = Some(all.units).filter(|units| !units.is_empty());
+        self.factors = Some(all.factors).filter(|factors| !factors.is_empty());
+        self.signs = Some(all.signs).filter(|signs| !signs.is_empty());
+    }
 }
 
 /// Headings of the columns of tables, by file: "omega \[rad/s\]", "mag P/LAT \[dB\]".
@@ -157,6 +182,8 @@ pub struct Rules {
     pub signs: Signs,
     /// Signs of channels in the models of a role, "identified" or "physics", which go before those of all files.
     pub role_signs: BTreeMap<String, Signs>,
+    /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
+    pub declarations: Vec<ScopedDeclarations>,
     /// Sample time of models without one \[s\], 0 of continuous-time models; none where it is asked for.
     pub sample_time_s: Option<f64>,
     /// What the columns of tables hold, in place of their own headings: what a file of columns is read by.
@@ -179,6 +206,7 @@ impl Default for Rules {
             units: Vec::new(),
             signs: Signs::new(),
             role_signs: BTreeMap::new(),
+            declarations: Vec::new(),
             sample_time_s: None,
             headings: Headings::new(),
             rows: BTreeMap::new(),
@@ -220,22 +248,74 @@ impl Rules {
             }
         }
         self.units.iter_mut().filter(|unit| unit.channel == old).for_each(|unit| unit.channel.clone_from(&name));
-        let of_models = self.rows.values_mut().filter_map(|row| row.signs.as_mut());
-        for signs in of_models.chain(self.role_signs.values_mut()).chain([&mut self.signs]) {
-            if let Some(sign) = signs.remove(&old) {
-                signs.insert(name.clone(), sign);
+        for row in self.rows.values_mut() {
+            if let Some(signs) = &mut row.signs {
+                rename_key(signs, &old, &name);
             }
+            if let Some(units) = &mut row.units {
+                rename_key(units, &old, &name);
+            }
+            if let Some(factors) = &mut row.factors {
+                rename_key(factors, &old, &name);
+            }
+        }
+        for signs in self.role_signs.values_mut().chain([&mut self.signs]) {
+            rename_key(signs, &old, &name);
+        }
+        for declared in &mut self.declarations {
+            declared.channels.rename(&old, &name);
         }
     }
 
-    /// The signs that are said of the channels of a model: those of the model before those of its role, these before those of all.
-    pub fn signs_of(&self, key: &str, role: Option<RowRole>) -> Signs {
-        let mut signs = self.signs.clone();
-        let bundle = role.map(|role| if role == RowRole::Identified { "identified" } else { "physics" });
-        let of_role = bundle.and_then(|bundle| self.role_signs.get(bundle));
-        let of_model = self.rows.get(key).and_then(|row| row.signs.as_ref());
-        signs.extend(of_role.into_iter().chain(of_model).flatten().map(|(name, sign)| (name.clone(), *sign)));
-        signs
+    /// Units, factors and signs that hold of the channels of a model: those of one file go before those of a folder, these before those
+    /// of a role, and these before those of all.
+    pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> DeclaredChannels<'_> {
+        let with_signs = |of: FileScope, signs: &Signs| ScopedDeclarations {
+            of,
+            channels: ChannelDeclarations { signs: signs.clone(), ..ChannelDeclarations::default() },
+        };
+        let mut declarations = vec![with_signs(FileScope::All, &self.signs)];
+        for (role, signs) in &self.role_signs {
+            declarations.push(with_signs(FileScope::from(role.clone()), signs));
+        }
+        declarations.extend(self.declarations.iter().cloned());
+        let mut channels = ChannelDeclarations::default();
+        for declared in declared_of(&declarations, found, role) {
+            channels.override_by(&declared.channels);
+        }
+        if let Some(row) = self.rows.get(&found.key()) {
+            channels.override_by(&row.declarations());
+        }
+        DeclaredChannels { conversions: &self.units, channels }
+    }
+
+    /// Declares units, factors and signs in the place of what was declared of the same channels of the same models. Signs of all
+    /// models and of a role are kept in [`Self::signs`] and [`Self::role_signs`].
+    pub fn declare(&mut self, of: FileScope, declared: &ChannelDeclarations) {
+        let signs = declared.signs.iter().map(|(channel, sign)| (channel.clone(), *sign));
+        match &of {
+            FileScope::Files(_) => return self.declarations_mut(of).override_by(declared),
+            FileScope::All => self.signs.extend(signs),
+            FileScope::Physics | FileScope::Identified => {
+                self.role_signs.entry(of.to_string()).or_default().extend(signs);
+            }
+        }
+        let conversions = ChannelDeclarations { signs: Signs::new(), ..declared.clone() };
+        if conversions != ChannelDeclarations::default() {
+            self.declarations_mut(of).override_by(&conversions);
+        }
+    }
+
+    /// The declarations of some models, to be added to.
+    pub fn declarations_mut(&mut self, of: FileScope) -> &mut ChannelDeclarations {
+        let index = match self.declarations.iter().position(|declared| declared.of == of) {
+            Some(index) => index,
+            None => {
+                self.declarations.push(ScopedDeclarations { of, channels: ChannelDeclarations::default() });
+                self.declarations.len() - 1
+            }
+        };
+        &mut self.declarations[index].channels
     }
 }
 
@@ -384,7 +464,7 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
         format!(r"(?:^|[/_#, -])(?:d|delta_?)?(?:{words})[_ ]?(?<by_{coordinate}>{SIGNED})")
     };
     let texts = [
-        r"(?:^|[/_ -])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ #.-])(?:c|cond|condition|fc|case|point)[_ -]?0*(?<condition>\d+)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ ])v?0*(?<airspeed_kt>\d+(?:\.\d+)?)[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
         r"-(?<airspeed_kt>\d{3})[_ ]?(?:kt|kts|ktas|kcas|kias|knots)(?:[/_ .#-]|$)".to_owned(),
         r"(?:^|[/_ -])(?<altitude_ft>\d{3,5})[_ ]?ft(?:[/_ .#-]|$)".to_owned(),
@@ -398,10 +478,10 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
         offset("roc|climb|rateofclimb|hdot", "rate_of_climb_fpm"),
         offset("pitch|theta", "pitch_deg"),
         offset("beta|slip|sideslip", "sideslip_deg"),
-        r"(?:^|[/_ #-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#-]|$)".to_owned(),
-        r"(?:^|[/_ #-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#-]|$)"
+        r"(?:^|[/_ #.-])(?<nominal>nominal|nom|trim|baseline)(?:[/_ .#(-]|$)".to_owned(),
+        r"(?:^|[/_ #.-])(?<identified>identified|ident|id|sysid|sid|(?:ct-?)?pbsid|n4sid|cifer|flight|flt|measured|frf)\d*(?:[/_ .#(-]|$)"
             .to_owned(),
-        r"(?:^|[/_ #-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#-]|$)".to_owned(),
+        r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
     ];
     // Each is tried by a test: none is left out here.
     texts.iter().filter_map(|text| NamePattern::new(text).ok()).collect()
@@ -430,6 +510,8 @@ mod tests {
             role_signs: BTreeMap::from([("identified".into(), Signs::from([("xb".into(), -1.0)]))]),
             ..Rules::default()
         };
+        rules.declarations_mut(FileScope::Physics).units.insert("xb".into(), "in".into());
+        rules.rows.entry("a.mat".into()).or_default().factors = Some([("xb".to_owned(), 8.0)].into());
         rules.rename(ChannelSide::Input, 0, "LON".into());
         rules.rename(ChannelSide::Output, 1, "NZ".into());
         let pair = |output: &str, input: &str| (output.to_owned(), input.to_owned());
@@ -438,6 +520,8 @@ mod tests {
         assert_eq!(rules.units[0].channel, "LON");
         assert_eq!(rules.signs, Signs::from([("NZ".into(), -1.0)]));
         assert_eq!(rules.role_signs["identified"], Signs::from([("LON".into(), -1.0)]));
+        assert_eq!(rules.declarations[0].channels.units.keys().collect::<Vec<_>>(), ["LON"]);
+        assert_eq!(rules.rows["a.mat"].declarations().factors.keys().collect::<Vec<_>>(), ["LON"]);
         let before = rules.clone();
         rules.rename(ChannelSide::Input, 0, "LON".into());
         rules.rename(ChannelSide::Input, 7, "none".into());
@@ -479,6 +563,8 @@ mod tests {
         let row = read("V090kt_2000ft_6600kg/CT-PBSID 2");
         assert_eq!((row.airspeed_kt, row.altitude_ft, row.mass_kg), (Some(90.0), Some(2000.0), Some(6600.0)));
         assert_eq!(read("x/flight_1").role, Some(RowRole::Identified));
+        let row = read("study#study.c3.identified(2)");
+        assert_eq!((row.condition, row.role), (Some(3), Some(RowRole::Identified)), "fields of a struct");
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 use nalgebra::Complex;
 
-use super::PairTable;
 use super::limits::{AVERAGES, WINDOW_S};
+use super::{Pair, PairTable};
 use crate::units::number;
 
 /// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
@@ -169,6 +169,12 @@ impl MeasuredResponse {
         self.valid_bands.as_ref()
     }
 
+    /// Whether there are numbers of a response: some are not zero, and its valid band holds a frequency.
+    pub fn is_measured(&self, pair: Pair) -> bool {
+        let has_band = self.valid_bands.as_ref().is_none_or(|bands| bands[pair][1] > 0.0);
+        has_band && self.values[pair].iter().any(|value| *value != Complex::new(0.0, 0.0))
+    }
+
     /// How the response was estimated.
     pub fn estimate(&self) -> Estimate {
         self.estimate
@@ -241,7 +247,7 @@ mod tests {
     fn a_valid_band_that_ends_before_it_begins_is_refused() {
         let response = MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None).unwrap();
         let with = |band| response.clone().with_valid_bands(PairTable::filled(1, 1, band));
-        assert_eq!(with([0.5, 1.5]).unwrap().valid_bands().unwrap()[crate::dataset::Pair::new(0, 0)], [0.5, 1.5]);
+        assert_eq!(with([0.5, 1.5]).unwrap().valid_bands().unwrap()[Pair::new(0, 0)], [0.5, 1.5]);
         for band in [[2.0, 1.0], [-1.0, 1.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
             assert!(matches!(with(band), Err(MeasuredResponseError::ValidBand { .. })));
         }

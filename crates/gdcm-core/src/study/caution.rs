@@ -158,6 +158,8 @@ pub enum Undefined {
     NumericallyNothing(BundleKind),
     /// No frequency of the identified representative's response is coherent enough, or all lie outside its valid band (M4a).
     NotCoherent,
+    /// The identified representative is measured, and no file of it gives this response.
+    NotMeasured,
 }
 
 impl Undefined {
@@ -195,6 +197,9 @@ impl fmt::Display for Undefined {
             Undefined::NotCoherent => formatter.write_str(
                 "its response was not measured: no frequency of the band is coherent enough, or lies in the valid band",
             ),
+            Undefined::NotMeasured => {
+                formatter.write_str("its response was not measured: the identified model has no numbers of it")
+            }
             Undefined::NumericallyNothing(bundle) => {
                 write!(formatter, "its response is numerically nothing in the {bundle} model: {NOTHING}")
             }

@@ -210,8 +210,11 @@ impl Comparison {
             against(&compared(BundleKind::Physics, nominal))
         };
         let delta = Delta::of(&representative.mismatch, grid.omega());
-        let undefined =
-            delta.gain.map(|pair, gain| gain.is_none().then(|| why_undefined(&simulated, &reference, pair)));
+        let why = |pair: Pair| match flight {
+            Dynamics::Measured(response) if !response.is_measured(pair) => Undefined::NotMeasured,
+            _ => why_undefined(&simulated, &reference, pair),
+        };
+        let undefined = delta.gain.map(|pair, gain| gain.is_none().then(|| why(pair)));
         let mut out_of_range = GainOutOfRange::of_models(&simulated.polar, &reference.polar);
         // A gain may be out of range where coherence leaves it out.
         out_of_range.retain(|of| delta.gain[of.pair].is_none());

@@ -145,7 +145,7 @@ fn a_stack_in_the_order_of_numpy_is_a_model_for_each_first_index() {
 #[test]
 fn responses_as_text_are_read_however_they_are_written() {
     for name in ["cplx_Q_LON.csv", "desc_Q_LON.csv", "pd_Q_LON.csv", "cohp_Q_LON.csv"] {
-        let model = model(&format!("text/{name}"));
+        let model = model(&format!("text/{name}")).with_names_of_file();
         assert_eq!(
             (model.outputs[0].name.as_deref(), model.inputs[0].name.as_deref()),
             (Some("Q"), Some("LON")),

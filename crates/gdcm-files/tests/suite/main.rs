@@ -9,6 +9,7 @@ use gdcm_files::{LoadedDataset, embedded_example, load_dataset};
 mod analysis;
 mod dataset_file;
 mod figures;
+mod file_forms;
 mod foreign_files;
 mod fuzz;
 mod hostile_files;

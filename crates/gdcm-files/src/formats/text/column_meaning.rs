@@ -1,6 +1,6 @@
 //! What a column of a frequency response holds, from its name and unit.
 
-use gdcm_core::assembly::PhysicalUnit;
+use gdcm_core::assembly::{KnownChannels, PhysicalUnit, ResponseName};
 
 /// What a column of a frequency response holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,13 +73,6 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("pct", KnownUnit::Percent),
     ("%", KnownUnit::Percent),
 ];
-
-/// Whether a word names what a column of a frequency response holds ("re", "phase") or its unit, and so no channel.
-pub fn says_quantity(word: &str) -> bool {
-    let word = word.to_lowercase();
-    let known = |kinds: &[&str]| kinds.contains(&word.as_str());
-    WORDS.iter().any(|(_, kinds)| known(kinds)) || UNIT_ENDINGS.iter().any(|(unit, _)| *unit == word)
-}
 
 impl ColumnMeaning {
     /// Reads the name and the unit of a column.
@@ -262,6 +255,12 @@ impl ResponseLabel {
                 return Self { output: part(output), input: part(input) };
             }
         }
+        // Words that the field has names for: "q_delta_lon", "roll_rate".
+        let known = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
+        let is_whole = |name: &Option<String>| name.as_deref() == Some(text);
+        if known.output.is_some() && known.input.is_some() || is_whole(&known.output) || is_whole(&known.input) {
+            return Self { output: known.output, input: known.input };
+        }
         match text.split_once('_') {
             Some((output, input)) if !input.contains('_') => Self { output: part(output), input: part(input) },
             _ => Self { output: part(text), input: None },
@@ -366,6 +365,10 @@ mod response_label_tests {
             assert_eq!(read(text), expected, "{text}");
         }
         assert_eq!(read("P_LAT"), expected);
+        assert_eq!(read("q_delta_lon"), ("q".to_owned(), "delta_lon".to_owned()));
+        assert_eq!(read("q per lon"), ("q".to_owned(), "lon".to_owned()));
+        assert_eq!(read("roll_rate"), ("roll_rate".to_owned(), String::new()));
+        assert_eq!(read("delta_lon"), (String::new(), "delta_lon".to_owned()));
         assert_eq!(read(" P_"), ("P".to_owned(), String::new()));
         assert_eq!(read("a_b_c").0, "a_b_c");
         assert_eq!(ResponseLabel::of("()"), ResponseLabel::default());

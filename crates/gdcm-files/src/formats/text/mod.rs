@@ -13,7 +13,6 @@ mod word_columns;
 use crate::file_error::FileError;
 use crate::formats::{Contents, Importer};
 
-pub(crate) use column_meaning::says_quantity;
 pub(crate) use columns::{TextTable, read_table};
 pub use frequency_columns::UnsaidUnit;
 pub(crate) use frequency_columns::{FrequencyColumns, RecognisedResponse, ResponsePoints, Unrecognised};

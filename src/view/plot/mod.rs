@@ -31,6 +31,7 @@ pub use curve_style::*;
 pub use drawn_curves::*;
 pub use figure_view::*;
 pub use legend::*;
+pub use navigation::PICK_RADIUS;
 pub use overview::*;
 pub use quantity::*;
 pub use readout::*;

@@ -239,7 +239,6 @@ impl ProblemKind {
             Self::Contradiction { .. } => "contradiction",
             Self::NameContradiction { .. } => "name-contradiction",
             Self::Nominal { .. } => "nominal",
-            Self::NoIdentified(_) => "no-identified",
             Self::Name { .. } => "duplicate-name",
             Self::MeasuredPhysics(_) => "measured-physics",
             Self::Grids { .. } => "grids",

@@ -172,6 +172,7 @@ impl Undefined {
             Self::GainOutOfRange(_) => "gain-out-of-range",
             Self::NumericallyNothing(_) => "response-numerically-nothing",
             Self::NotCoherent => "response-not-coherent",
+            Self::NotMeasured => "response-not-measured",
         }
     }
 }

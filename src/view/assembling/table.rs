@@ -148,7 +148,9 @@ pub(super) fn problems_ui(ui: &mut Ui, state: &AssemblyState, palette: &Palette,
         for caution in assembly.cautions() {
             let words = format!("caution: {}", assembly.caution_words(&caution));
             let response = ui.add(Label::new(palette.small_warning(words)).sense(Sense::click()).wrap());
-            if let Some(part) = caution.parts.first().filter(|_| response.clicked()) {
+            if response.clicked()
+                && let Some(part) = caution.parts.first()
+            {
                 commands.push(AssemblingCommand::Select(*part).into());
             }
         }

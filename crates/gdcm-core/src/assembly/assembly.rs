@@ -679,6 +679,25 @@ mod tests {
         assert_eq!((whole.response.unwrap().valid_bands, whole.source), (None, None));
     }
 
+    #[test]
+    fn two_files_that_give_the_same_response_of_one_model_are_a_problem() {
+        let rule =
+            |name: &str| ChannelRule { unit: "%".into(), unit_in_files: Some("%".into()), ..ChannelRule::named(name) };
+        let rules = Rules { inputs: vec![rule("LON")], outputs: vec![rule("Q"), rule("P")], ..Rules::default() };
+        let measured_in = |file: &str| {
+            let mut model = found(file, None, Facts::default());
+            model.draft = ModelDraft { source: model.draft.source, ..measured(&[3.0, 4.0]) };
+            model
+        };
+        let codes = |files: [&str; 2]| -> Vec<&str> {
+            let assembly = Assembly::new(files.map(measured_in).to_vec(), rules.clone());
+            assembly.problems().iter().map(|problem| problem.kind.code()).collect()
+        };
+        assert!(codes(["c1/frf_q_lon.csv", "c1/frf_q_lon_run2.csv"]).contains(&"response-twice"));
+        assert!(!codes(["c1/frf_q_lon.csv", "c1/frf_p_lon.csv"]).contains(&"response-twice"));
+        assert!(codes(["c1/frf_q_lon.csv", "c1/frf_r_ped.csv"]).contains(&"response-unmatched"));
+    }
+
     /// A model of one input and one output in a file, with matrices.
     fn found(file: &str, variable: Option<&str>, facts: Facts) -> FoundModel {
         let scalar = |value: f64| Some(DMatrix::from_element(1, 1, value));

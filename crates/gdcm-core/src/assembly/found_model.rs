@@ -266,13 +266,19 @@ impl<'m> LabelledModel<'m> {
         let [inputs, outputs] = &self.labels;
         side.of(inputs, outputs)
     }
+
+    /// Whether the file itself names a channel of a side.
+    fn names_itself(&self, side: ChannelSide) -> bool {
+        side.of(&self.found.inputs, &self.found.outputs).iter().any(|label| label.name.is_some())
+    }
 }
 
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
 fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
     let named = |model: &LabelledModel<'_>| model.labels(side).iter().filter(|label| label.name.is_some()).count();
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
-    order.sort_by_key(|model| std::cmp::Reverse(named(model)));
+    // Names of files say less than what stands in files.
+    order.sort_by_key(|model| (std::cmp::Reverse(named(model)), !model.names_itself(side)));
     let first_is_measured = order.first().is_some_and(|model| model.found.response().is_some());
     let mut channels: Vec<ChannelRule> = Vec::new();
     let mut units: Vec<ProposedUnits> = Vec::new();

@@ -296,6 +296,7 @@ impl Rules {
         match &of {
             FileScope::Files(_) => return self.declarations_mut(of).override_by(declared),
             FileScope::All => self.signs.extend(signs),
+            FileScope::Physics | FileScope::Identified if declared.signs.is_empty() => {}
             FileScope::Physics | FileScope::Identified => {
                 self.role_signs.entry(of.to_string()).or_default().extend(signs);
             }

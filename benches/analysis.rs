@@ -13,16 +13,16 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::executor::Pool;
-use gdcm_core::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
-use gdcm_core::dataset::{
+use gdcm_io::{embedded_example, load_dataset};
+use gdcm_method::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm_method::fidelity::Discontinuity;
+use gdcm_model::dataset::{
     Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace,
 };
-use gdcm_core::fidelity::Discontinuity;
-use gdcm_core::response::{FrequencyGrid, PolarResponse};
-use gdcm_core::study::{
+use gdcm_model::response::{FrequencyGrid, PolarResponse};
+use gdcm_study::study::{
     BundleMetrics, ConditionResponses, Edit, Engine, Execution, KnownPoles, PhaseCorrection, Study, Unobserved, setting,
 };
-use gdcm_files::{embedded_example, load_dataset};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]

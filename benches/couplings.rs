@@ -13,12 +13,12 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Complex, DMatrix};
 
 use gdcm::executor::Pool;
-use gdcm_core::couplings::{CouplingCondition, CouplingProblem, Unknown, fit_couplings};
-use gdcm_core::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
-use gdcm_core::executor::Sequential;
-use gdcm_core::response::FrequencyResponse;
-use gdcm_core::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
-use gdcm_files::load_dataset;
+use gdcm_io::load_dataset;
+use gdcm_method::couplings::{CouplingCondition, CouplingProblem, Unknown, fit_couplings};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
+use gdcm_model::executor::Sequential;
+use gdcm_model::response::FrequencyResponse;
+use gdcm_study::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
 
 #[path = "stopwatch/mod.rs"]
 mod stopwatch;

@@ -14,7 +14,7 @@ use egui_plot::{Line, Plot};
 
 use gdcm::view::palette::Palette;
 use gdcm::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role, bode_ui};
-use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
 use window::Window;
 

@@ -11,12 +11,12 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use gdcm::executor::Pool;
-use gdcm_core::dataset::{ConditionId, StateSpace};
-use gdcm_core::identification::Preparation;
-use gdcm_core::progress::Progress;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, TimeWish};
-use gdcm_core::study::IdentificationRequest;
-use gdcm_files::{FolderProgress, embedded_example, read_records};
+use gdcm_io::{FolderProgress, embedded_example, read_records};
+use gdcm_model::dataset::{ConditionId, StateSpace};
+use gdcm_model::progress::Progress;
+use gdcm_study::study::IdentificationRequest;
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 
 struct Silent;
 

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use criterion::Criterion;
 use gdcm::executor::Pool;
-use gdcm_core::dataset::{
+use gdcm_model::dataset::{
     Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace,
 };
-use gdcm_core::executor::{Executor, Sequential};
-use gdcm_core::response::FrequencyGrid;
-use gdcm_core::study::{BundleMetrics, ConditionResponses, Execution, Unobserved};
+use gdcm_model::executor::{Executor, Sequential};
+use gdcm_model::response::FrequencyGrid;
+use gdcm_study::study::{BundleMetrics, ConditionResponses, Execution, Unobserved};
 use nalgebra::DMatrix;
 
 #[path = "random_model/mod.rs"]

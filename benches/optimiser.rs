@@ -9,9 +9,9 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use gdcm_core::correction::{Problem, ProofBudget, Solution, solve};
+use gdcm_method::correction::{Problem, ProofBudget, Solution, solve};
 
-#[path = "../crates/gdcm-files/tests/suite/optimiser/instances.rs"]
+#[path = "../crates/gdcm-io/tests/suite/optimiser/instances.rs"]
 // The tests use more of it.
 #[allow(dead_code)]
 mod instances;

@@ -17,8 +17,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput};
-use gdcm_core::dataset::{Band, Pair, StateSpace};
-use gdcm_core::response::{FrequencyGrid, FrequencyResponse, evaluate, evaluate_on};
+use gdcm_model::dataset::{Band, Pair, StateSpace};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate, evaluate_on};
 use nalgebra::{Complex, DMatrix};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::json;

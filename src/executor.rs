@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use gdcm_core::executor::{Executor, Task};
+use gdcm_model::executor::{Executor, Task};
 
 /// The threads of the global pool: one for each core.
 #[derive(Clone, Copy, Debug, Default)]

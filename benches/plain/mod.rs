@@ -1,6 +1,6 @@
 //! What a plain method costs: projected gradient on the channel gains or delays with the held entries as a penalty, no proof.
 
-use gdcm_core::correction::Problem;
+use gdcm_method::correction::Problem;
 
 /// Steps after which the plain method gives up.
 const STEPS: usize = 400;

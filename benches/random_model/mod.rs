@@ -1,6 +1,6 @@
 //! Models that several benches share, and the plain way to their responses.
 
-use gdcm_core::dataset::StateSpace;
+use gdcm_model::dataset::StateSpace;
 use nalgebra::{Complex, DMatrix};
 
 /// Number of outputs.

@@ -8,7 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use gdcm::app::GdcmApp;
-use gdcm_files::{Opened, embedded_example};
+use gdcm_io::{Opened, embedded_example};
 
 /// The window on the embedded example.
 pub struct Window {

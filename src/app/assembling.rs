@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_core::assembly::Rules;
-use gdcm_core::message_text::sanitized_path;
-use gdcm_files::{
+use gdcm_io::{
     FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder, rules_path,
     sources_folder,
 };
+use gdcm_model::assembly::Rules;
+use gdcm_model::message_text::sanitized_path;
 
 use super::{DialogPurpose, GdcmApp, ReplySender};
 use crate::view::FormKind;

@@ -6,10 +6,10 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-use gdcm_core::correction::{Outcome, Problem, Solution};
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::executor::Executor;
-use gdcm_core::study::{
+use gdcm_method::correction::{Outcome, Problem, Solution};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::executor::Executor;
+use gdcm_study::study::{
     Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionFailure, CurvesJob, Engine, Job, KnownModels,
     Progress, ProofJob, Study, TogglesJob, UncertaintyJob, WantedFirst, curves_band,
 };

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::{Difference, Study};
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{
     Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
     file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
 };
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_study::study::{Difference, Study};
 
 use super::GdcmApp;
 use super::threads::caught;

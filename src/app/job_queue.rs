@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::threads::{Fault, Mailbox, caught};
-use gdcm_core::study::{Cancelled, Job, Progress};
+use gdcm_study::study::{Cancelled, Job, Progress};
 
 /// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;

@@ -15,10 +15,10 @@ use crate::executor::{Pool, start_threads};
 use crate::view::assembling::AssemblingCommand;
 use crate::view::start_page::OpensWith;
 use crate::view::{Command, Preferences};
-use gdcm_core::message_text::{sanitized, sanitized_path, shortened_message};
-use gdcm_core::study::{Engine, LIVE_PROOF};
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
+use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
+use gdcm_study::study::{Engine, LIVE_PROOF};
 
 use super::recovery::{Autosave, LAST_WAIT, end_words};
 use super::threads::{self, Fault, caught};

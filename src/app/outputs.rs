@@ -4,15 +4,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_core::message_text::sanitized_path;
-use gdcm_core::study::{
-    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress, RequirementSettings, Table,
-};
-use gdcm_files::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
-use gdcm_files::{
+use gdcm_io::{
     Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource, ReportSubject,
     add_tolerances, csv_text, export_contents, figure_format, load_tolerances, read_levels, report, save_report,
     save_tables, write_export, write_figure, write_results,
+};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
+use gdcm_study::study::{
+    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress, RequirementSettings, Table,
 };
 
 use super::GdcmApp;

@@ -5,17 +5,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
-use gdcm_core::identification::{Identification, IdentificationError, Signal};
-use gdcm_core::records::{
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{
+    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
+};
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
+use gdcm_study::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
+use gdcm_sysid::identification::{Identification, IdentificationError, Signal};
+use gdcm_sysid::records::{
     LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records, leave_out_copies,
     with_topics_joined,
-};
-use gdcm_core::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{
-    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
 };
 
 use super::threads::Untold;

@@ -6,10 +6,10 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::Study;
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, load_any, lost_studies};
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, load_any, lost_studies};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_study::study::Study;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
@@ -337,7 +337,7 @@ mod tests {
     }
 
     fn unsaved() -> Unsaved {
-        let loaded = gdcm_files::embedded_example().unwrap();
+        let loaded = gdcm_io::embedded_example().unwrap();
         Unsaved { study: Study::new(Arc::clone(&loaded.dataset)), loaded, saved_as: None }
     }
 
@@ -356,7 +356,7 @@ mod tests {
         // The window goes with the display, and its thread with it; then the program says what became of the decisions.
         autosave.clone().close(LONG);
         let Remains::Kept(kept) = autosave.flush(LONG) else { panic!("{:?}", autosave.flush(LONG)) };
-        assert!(kept.path.is_file() && gdcm_files::open_study(&kept.path).is_ok());
+        assert!(kept.path.is_file() && gdcm_io::open_study(&kept.path).is_ok());
         let words = end_words("no display", &autosave.flush(LONG));
         assert!(words.contains(&*kept.path.to_string_lossy()) && !words.contains("lost"), "{words}");
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_files::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset_within};
+use gdcm_io::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset_within};
 
 use super::{GdcmApp, ReadFor, ReplySender};
 use crate::view::Bar;

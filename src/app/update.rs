@@ -3,7 +3,7 @@
 use std::fmt::Display as InWords;
 
 use egui::ViewportCommand;
-use gdcm_core::message_text::{sanitized, shortened_message};
+use gdcm_model::message_text::{sanitized, shortened_message};
 
 use crate::view::plot::{FigureView, Pane};
 use crate::view::records::{RecordsBefore, RecordsState};
@@ -13,9 +13,9 @@ use crate::view::{
     Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field, leave_region,
     table_of,
 };
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Edit, History, Study};
-use gdcm_files::Existing;
+use gdcm_io::Existing;
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::study::{Edit, History, Study};
 
 use super::{DialogPurpose, GdcmApp, PendingAction};
 

@@ -14,10 +14,10 @@ use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, restore_p
 use crate::view::{
     answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, start_page,
 };
-use gdcm_core::correction::{ProblemError, Solution};
-use gdcm_core::dataset::{BundleKind, ConditionId};
-use gdcm_core::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
-use gdcm_files::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
+use gdcm_io::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
+use gdcm_method::correction::{ProblemError, Solution};
+use gdcm_model::dataset::{BundleKind, ConditionId};
+use gdcm_study::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
 
 use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
 use super::files::SavedStudy;

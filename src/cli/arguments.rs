@@ -6,9 +6,9 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand};
 
-use gdcm_core::assembly::FileScope;
-use gdcm_core::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
-use gdcm_files::figure::{ColumnWidth, FigureKind, Role};
+use gdcm_model::assembly::FileScope;
+use gdcm_plot::figure::{ColumnWidth, FigureKind, Role};
+use gdcm_study::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
 
 use super::identify_arguments::IdentifyArguments;
 use super::records::HistoryArguments;

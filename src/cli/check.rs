@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_core::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::{ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
-use gdcm_core::units::number;
-use gdcm_files::{
+use gdcm_io::{
     ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults, holds_models,
 };
+use gdcm_model::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::number;
+use gdcm_study::study::{ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;

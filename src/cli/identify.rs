@@ -4,19 +4,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_core::dataset::{Band, BundleKind, ChannelRemedy, ChannelSide, ConditionId, ConditionRecord, Dataset};
-use gdcm_core::identification::{
-    CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
-    RecordUse, Signal, is_held,
-};
-use gdcm_core::message_text::sanitized_path;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, median_step};
-use gdcm_core::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{
     IdentifiedModels, Opened, OutputSet, add_dataset, add_identified, load_any, make_directory, relative_entry,
     relative_folder,
 };
+use gdcm_model::dataset::{Band, BundleKind, ChannelRemedy, ChannelSide, ConditionId, ConditionRecord, Dataset};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_study::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
+use gdcm_sysid::identification::{
+    CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError, Preparation,
+    RecordUse, Signal, is_held,
+};
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, median_step};
 
 use super::existing;
 use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, Dataset};
-use gdcm_core::identification::{ChannelPreparation, Preparation, SearchSpace};
-use gdcm_core::records::{ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion};
-use gdcm_core::study::OfferedModels;
-use gdcm_core::units::number;
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::dataset::{Band, Dataset};
+use gdcm_model::units::number;
+use gdcm_study::study::OfferedModels;
+use gdcm_sysid::identification::{ChannelPreparation, Preparation, SearchSpace};
+use gdcm_sysid::records::{ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion};
 
 use super::arguments::{OfChannel, real_number, whole_number};
 use super::terminal::Failure;

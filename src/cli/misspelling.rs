@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::CommandFactory;
-use gdcm_core::message_text::{sanitized, shortened};
+use gdcm_model::message_text::{sanitized, shortened};
 
 use super::arguments::Arguments;
 use super::terminal::Failure;

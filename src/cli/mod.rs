@@ -23,10 +23,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use clap::error::{ContextKind, ContextValue};
 
-use gdcm_core::message_text::sanitized_path;
-use gdcm_core::study::{Kind, SETTINGS};
-use gdcm_files::variables::ReadingBudget;
-use gdcm_files::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{Existing, Opened, holds_models, load_any, open_study_of, write_example};
+use gdcm_model::message_text::sanitized_path;
+use gdcm_study::study::{Kind, SETTINGS};
 
 use crate::executor::start_threads;
 use arguments::{Arguments, Command, OpeningArguments};

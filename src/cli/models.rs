@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use gdcm_core::assembly::{Assembly, ChannelDeclarations, FileScope, FoundModel, Headings, Rules, proposed_rules};
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::{ConditionFailure, Table};
-use gdcm_core::units::number;
-use gdcm_files::{
+use gdcm_io::{
     EVERY_TABLE, FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
     relative_folder, rules_path, sources_folder,
 };
+use gdcm_model::assembly::{Assembly, ChannelDeclarations, FileScope, FoundModel, Headings, Rules, proposed_rules};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::number;
+use gdcm_study::study::{ConditionFailure, Table};
 
 use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;

@@ -5,16 +5,16 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use gdcm_core::dataset::{Band, ConditionId, Dataset};
-use gdcm_core::identification::{CautionNote, Preparation};
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::records::{
+use gdcm_io::{FoundRecords, read_records};
+use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::{number, telling};
+use gdcm_study::study::{Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of};
+use gdcm_sysid::identification::{CautionNote, Preparation};
+use gdcm_sysid::records::{
     LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordSource, RecordTable, SaidConversion, TimeWish,
     leave_out_copies, median_step, with_topics_joined,
 };
-use gdcm_core::study::{Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of};
-use gdcm_core::units::{number, telling};
-use gdcm_files::{FoundRecords, read_records};
 
 use super::arguments::OfChannel;
 use super::identify_arguments::{IdentifyArguments, RecordPart, channel_unit, record_part, say_conversions};

@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::requirements::ModeVerdict;
-use gdcm_core::study::{
+use gdcm_io::{REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
+use gdcm_method::requirements::ModeVerdict;
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::s_to_ms;
+use gdcm_study::study::{
     Analysis, BandwidthFinding, KnownPoles, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table,
     TimeHistories,
 };
-use gdcm_core::units::s_to_ms;
-use gdcm_files::{REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
 
 use super::arguments::RequirementsArguments;
 use super::models::counted;

@@ -7,20 +7,20 @@ use std::sync::Arc;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use gdcm_core::correction::{Channel, HIGHEST_PADE_ORDER, Pade};
-use gdcm_core::dataset::{ConditionId, Dataset, Pair};
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::study::{
-    Analysis, AssessedCorrection, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, KnownPoles, Study,
-    Unobserved, curves_band,
-};
-use gdcm_files::figure::{
-    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
-};
-use gdcm_files::{
+use gdcm_io::{
     EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, ReportSource, ReportSubject, check_export,
     export_contents, figure_format, make_directory, report as report_of, result_paths, save_report, write_export,
     write_figure, write_results,
+};
+use gdcm_method::correction::{Channel, HIGHEST_PADE_ORDER, Pade};
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_plot::figure::{
+    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
+};
+use gdcm_study::study::{
+    Analysis, AssessedCorrection, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, KnownPoles, Study,
+    Unobserved, curves_band,
 };
 
 use super::arguments::{

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use gdcm_core::correction;
-use gdcm_core::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
-use gdcm_core::message_text::sanitized;
-use gdcm_core::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
-use gdcm_files::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
+use gdcm_io::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
+use gdcm_method::correction;
+use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
+use gdcm_model::message_text::sanitized;
+use gdcm_study::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;

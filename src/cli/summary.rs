@@ -2,18 +2,18 @@
 
 use std::path::Path;
 
-use gdcm_core::correction::{ChannelCorrection, ChannelLeads, GainSource, LeadPrice, Outcome};
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
-use gdcm_core::message_text::{sanitized, sanitized_path};
-use gdcm_core::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
-use gdcm_core::study::{
+use gdcm_io::{LoadedDataset, RESULT_FILES, assessment_sentence};
+use gdcm_method::correction::{ChannelCorrection, ChannelLeads, GainSource, LeadPrice, Outcome};
+use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::units::{number, s_to_ms, signed, six_digits};
+use gdcm_study::study::{
     Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, ConventionDoubt,
     PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_limit_words, remarks,
     scatter_table,
 };
-use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::{number, s_to_ms, signed, six_digits};
-use gdcm_files::{LoadedDataset, RESULT_FILES, assessment_sentence};
 
 use super::terminal::{by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions};
 

@@ -13,10 +13,10 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::message_text::{sanitized, sanitized_path, shortened, shortened_message};
-use gdcm_core::study::{Cancelled, Progress, Table};
-use gdcm_files::{FileError, system_words, write_pretty};
+use gdcm_io::{FileError, system_words, write_pretty};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_message};
+use gdcm_study::study::{Cancelled, Progress, Table};
 
 /// How a command says what it says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -4,9 +4,9 @@ use egui::{
     Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2,
 };
 
-use gdcm_core::correction::GainSource;
-use gdcm_core::study::{PhaseCorrection, setting};
-use gdcm_core::units::number;
+use gdcm_method::correction::GainSource;
+use gdcm_model::units::number;
+use gdcm_study::study::{PhaseCorrection, setting};
 
 use super::controls::{elided, text_width};
 use super::palette::{TITLE_SIZE, body, medium, small};

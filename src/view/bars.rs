@@ -5,7 +5,7 @@ use egui::{
     RichText, Role, Sense, Stroke, StrokeKind, ThemePreference, Ui, pos2, vec2,
 };
 
-use gdcm_core::dataset::{BundleKind, Condition};
+use gdcm_model::dataset::{BundleKind, Condition};
 
 use super::command_table::command_table;
 use super::controls::{elided, in_line_ui, text_width};

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::ThemePreference;
-use gdcm_core::dataset::{ConditionId, ModelId, Pair};
-use gdcm_core::study::{AcrossRole, Edit, ExplainTarget, Table};
-use gdcm_files::ExportFormat;
-use gdcm_files::figure::{ColumnWidth, FigureFormat};
+use gdcm_io::ExportFormat;
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_plot::figure::{ColumnWidth, FigureFormat};
+use gdcm_study::study::{AcrossRole, Edit, ExplainTarget, Table};
 
 use super::assembling::AssemblingCommand;
 use super::cost_map::MappedCost;

@@ -2,9 +2,9 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
-use gdcm_core::dataset::{BundleKind, ModelId, Pair};
-use gdcm_core::study::{Edit, Kind, OfferedModels, SETTINGS, Value};
-use gdcm_files::figure::FigureFormat;
+use gdcm_model::dataset::{BundleKind, ModelId, Pair};
+use gdcm_plot::figure::FigureFormat;
+use gdcm_study::study::{Edit, Kind, OfferedModels, SETTINGS, Value};
 
 use super::assembling::AssemblingCommand;
 use super::plot::FrequencyUnit;

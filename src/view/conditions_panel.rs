@@ -2,11 +2,11 @@
 
 use egui::{Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 
-use gdcm_core::correction::Unmatched;
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, FlightState, Pair};
-use gdcm_core::fidelity::Cost;
-use gdcm_core::study::Edit;
-use gdcm_files::figure::{Classes, decimals};
+use gdcm_method::correction::Unmatched;
+use gdcm_method::fidelity::Cost;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, FlightState, Pair};
+use gdcm_plot::figure::{Classes, decimals};
+use gdcm_study::study::Edit;
 
 use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
 use super::palette::{HEAT_COSTS, body, medium, small};

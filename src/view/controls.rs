@@ -10,8 +10,8 @@ use egui::{
     Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use gdcm_core::study::Digits;
-use gdcm_core::units::number;
+use gdcm_model::units::number;
+use gdcm_study::study::Digits;
 
 use super::focus::begin_with;
 use super::palette::medium;

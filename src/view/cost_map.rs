@@ -1,9 +1,9 @@
 //! The map of costs: J of magnitude and of phase of every held response in every condition, as shades of one hue; with couplings the
 //! mean of the others beside them.
 
-use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::fidelity::Cost;
-use gdcm_core::study::CouplingCorrection;
+use gdcm_method::fidelity::Cost;
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_study::study::CouplingCorrection;
 
 use super::State;
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use egui::Key;
-use gdcm_core::dataset::{ConditionId, ModelId, Pair};
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 
 use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
 use super::{Command, CurveColors, Entry, Menu, PlotStyle, State};

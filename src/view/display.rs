@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use gdcm_core::dataset::{ConditionId, ModelId, Pair};
-use gdcm_core::study::{AcrossRole, ExplainTarget};
-use gdcm_files::figure::{AirspeedCache, ErrorCache, ResponseCache};
+use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_plot::figure::{AirspeedCache, ErrorCache, ResponseCache};
+use gdcm_study::study::{AcrossRole, ExplainTarget};
 
 use super::cost_map::MappedCost;
 use super::plot::{

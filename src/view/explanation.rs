@@ -8,9 +8,9 @@ use egui::{
     RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
 };
 
-use gdcm_core::correction::{Channel, GainObjective, Outcome, Quantity, kkt_residual};
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::{
+use gdcm_method::correction::{Channel, GainObjective, Outcome, Quantity, kkt_residual};
+use gdcm_model::dataset::Pair;
+use gdcm_study::study::{
     ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, RemarkKind, SignRole, derivation, details, lead_words,
     no_couplings, remarks, setting,
 };

@@ -2,8 +2,8 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
-use gdcm_core::study::Table;
-use gdcm_files::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+use gdcm_plot::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+use gdcm_study::study::Table;
 
 use super::plot::{BodeView, PANES};
 use super::views::{

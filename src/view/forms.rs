@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, ScrollArea, TextEdit, Ui, vec2};
 
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{Analysis, Difference, Edit};
-use gdcm_files::figure::ColumnWidth;
-use gdcm_files::{EXPORTERS, ExportContents, ExportRequest, export_contents};
+use gdcm_io::{EXPORTERS, ExportContents, ExportRequest, export_contents};
+use gdcm_model::dataset::ConditionId;
+use gdcm_plot::figure::ColumnWidth;
+use gdcm_study::study::{Analysis, Difference, Edit};
 
 use super::records::{RecordsCommand, WantedDataset};
 use super::{

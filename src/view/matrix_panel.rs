@@ -6,13 +6,13 @@ use egui::{
     pos2, vec2,
 };
 
-use gdcm_core::correction::Channel;
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::{ConditionAnalysis, Edit, ExplainTarget, SignRole, Undefined};
-use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::s_to_ms;
+use gdcm_method::correction::Channel;
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::s_to_ms;
+use gdcm_study::study::{ConditionAnalysis, Edit, ExplainTarget, SignRole, Undefined};
 
-use gdcm_files::figure::decimals;
+use gdcm_plot::figure::decimals;
 
 use super::palette::{body, medium, small};
 use super::{

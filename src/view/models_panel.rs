@@ -6,11 +6,11 @@ use egui::{
     Align, Checkbox, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use gdcm_core::dataset::{BundleKind, Model, ModelId, Origin};
-use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::study::{Edit, ExplainTarget};
+use gdcm_method::fidelity::SUGGESTION_RATIO;
+use gdcm_model::dataset::{BundleKind, Model, ModelId, Origin};
+use gdcm_study::study::{Edit, ExplainTarget};
 
-use gdcm_files::figure::compact;
+use gdcm_plot::figure::compact;
 
 use super::answer_panel::chevron;
 use super::palette::{body, medium, small};
@@ -453,7 +453,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use gdcm_core::dataset::{Dynamics, StateSpace};
+    use gdcm_model::dataset::{Dynamics, StateSpace};
 
     #[test]
     fn names_are_shown_without_the_method_that_all_of_them_repeat() {

@@ -2,11 +2,11 @@
 
 use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
-use gdcm_core::correction::{Channel, Outcome};
-use gdcm_core::study::{ConditionAnalysis, ExplainTarget, servo_words};
-use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::s_to_ms;
-use gdcm_files::figure::decimals;
+use gdcm_method::correction::{Channel, Outcome};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::units::s_to_ms;
+use gdcm_plot::figure::decimals;
+use gdcm_study::study::{ConditionAnalysis, ExplainTarget, servo_words};
 
 use super::palette::{body, medium, small};
 use super::views::bar_words;

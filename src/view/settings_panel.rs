@@ -2,8 +2,8 @@
 
 use egui::{ComboBox, Grid, Role, Slider, Ui, WidgetInfo, pos2};
 
-use gdcm_core::correction::GainSource;
-use gdcm_core::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
+use gdcm_method::correction::GainSource;
+use gdcm_study::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
 
 use super::answer_panel::chevron;
 use super::palette::medium;

@@ -4,7 +4,7 @@ use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea, Sense, Shape,
     Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
-use gdcm_files::figure::compact;
+use gdcm_plot::figure::compact;
 use serde::{Deserialize, Serialize};
 
 use super::assembling::AssemblingCommand;
@@ -209,7 +209,7 @@ fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec
     frame.inner_margin(Margin::same(24)).show(ui, |ui| {
         ui.set_width(ui.available_width());
         let conditions = state.dataset().conditions();
-        let models: usize = conditions.iter().map(|of| of.bundle(gdcm_core::dataset::BundleKind::Physics).len()).sum();
+        let models: usize = conditions.iter().map(|of| of.bundle(gdcm_model::dataset::BundleKind::Physics).len()).sum();
         let (title, words, back) = if state.is_example {
             let words = format!(
                 "The example is simulated: {} conditions of a UH-60A-class helicopter, {models} physics models, flight records, and \

@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_core::correction::Problem;
-use gdcm_core::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
-use gdcm_core::identification::Validation;
-use gdcm_core::study::{
+use gdcm_io::ExportFormat;
+use gdcm_method::correction::Problem;
+use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
+use gdcm_plot::figure::ColumnWidth;
+use gdcm_study::study::{
     AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable, ConditionAnalysis,
     ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, Difference, History, ModesJob,
     RecordHistory, RecordHistoryJob, Requirements, RequirementsJob, SimulationJob, Study, Table, TestAnswers,
     TestAnswersJob, TimeHistories, TimeHistoriesJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
 };
-use gdcm_core::uncertainty::{Bar as ErrorBar, Scalar};
-use gdcm_files::ExportFormat;
-use gdcm_files::figure::ColumnWidth;
+use gdcm_sysid::identification::Validation;
 
 use super::assembling::AssemblyState;
 use super::records::{RecordsBefore, RecordsState};
@@ -542,8 +542,8 @@ pub(super) fn bar_words((done, total): (usize, usize)) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gdcm_core::study::{Engine, Unobserved};
-    use gdcm_files::embedded_example;
+    use gdcm_io::embedded_example;
+    use gdcm_study::study::{Engine, Unobserved};
 
     #[test]
     fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
-use gdcm_core::correction::Channel;
-use gdcm_core::dataset::{BundleKind, Condition, Model, Pair};
-use gdcm_core::fidelity::SUGGESTION_RATIO;
-use gdcm_core::study::{ConditionAnalysis, Table};
-use gdcm_core::uncertainty::Scalar;
-use gdcm_core::units::s_to_ms;
-use gdcm_files::figure::all_channels;
+use gdcm_method::correction::Channel;
+use gdcm_method::fidelity::SUGGESTION_RATIO;
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{BundleKind, Condition, Model, Pair};
+use gdcm_model::units::s_to_ms;
+use gdcm_plot::figure::all_channels;
+use gdcm_study::study::{ConditionAnalysis, Table};
 
 use super::{Command, Palette, SMALL_SIZE, State, Sureness, entries_ui, named};
 

@@ -1,14 +1,14 @@
 //! Whether the corrected model holds, and the one thing to do where it does not.
 
-use gdcm_core::correction::{ConflictKind, LeadPrice, Remedy};
-use gdcm_core::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_core::response::median;
-use gdcm_core::schedule::ScheduleCaution;
-use gdcm_core::study::{
+use gdcm_method::correction::{ConflictKind, LeadPrice, Remedy};
+use gdcm_method::schedule::ScheduleCaution;
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_model::response::median;
+use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
+use gdcm_study::study::{
     ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole,
     Value, setting,
 };
-use gdcm_core::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 
 use super::views::{offered_couplings, used_couplings};
 use super::{Command, FormKind, Sheet, State, View, turn_entry};
@@ -365,14 +365,14 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
 mod tests {
     use std::sync::Arc;
 
-    use gdcm_core::study::{Engine, Study, Unobserved, UnstablePole};
+    use gdcm_study::study::{Engine, Study, Unobserved, UnstablePole};
     use nalgebra::Complex;
 
     use super::super::views::couplings_job;
     use super::*;
 
     fn state_of(decide: &[Edit]) -> State {
-        let mut study = Study::new(gdcm_files::embedded_example().expect("it is in the program").dataset);
+        let mut study = Study::new(gdcm_io::embedded_example().expect("it is in the program").dataset);
         decide.iter().for_each(|edit| study.apply(edit).expect("the example takes it"));
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         state.display.condition = ConditionId(10);

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use gdcm_core::assembly::{
+use gdcm_io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm_io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
+use gdcm_model::assembly::{
     Assembly, ChannelRule, FoundModel, Headings, ProblemKind, RowRole, UnitRule, proposed_rules,
 };
-use gdcm_core::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
-use gdcm_files::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
-use gdcm_files::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -51,7 +51,7 @@ fn cell(texts: &[String]) -> Value {
 
 /// Names and units of the example's channels, as MATLAB names their lists.
 fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
-    let of = |channels: &[gdcm_core::dataset::Channel], part: fn(&gdcm_core::dataset::Channel) -> &String| {
+    let of = |channels: &[gdcm_model::dataset::Channel], part: fn(&gdcm_model::dataset::Channel) -> &String| {
         channels.iter().map(|channel| part(channel).clone()).collect()
     };
     [
@@ -624,7 +624,7 @@ fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_
         let Dynamics::Measured(response) = &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics else {
             panic!("{name}: the response is measured")
         };
-        let first = response.values()[gdcm_core::dataset::Pair::new(0, 0)][0];
+        let first = response.values()[gdcm_model::dataset::Pair::new(0, 0)][0];
         assert!((first.norm() - 1.0).abs() < 1e-12, "{name}: 0 dB, not {first}");
         std::fs::remove_file(models.join(name)).unwrap();
     }

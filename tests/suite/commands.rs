@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use gdcm_core::study::{Study, setting};
-use gdcm_files::{load_dataset, save_study};
+use gdcm_io::{load_dataset, save_study};
+use gdcm_study::study::{Study, setting};
 use serde_json::{Value, json};
 
 use crate::{entries, members};
@@ -603,7 +603,7 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
     fs::write(desk.path("large.json"), wrong).unwrap();
     let file = fs::File::options().write(true).open(desk.path("large.json")).unwrap();
     // More than is read: what reads it to its end says that.
-    file.set_len(gdcm_files::LARGEST_TEXT + 1).unwrap();
+    file.set_len(gdcm_io::LARGEST_TEXT + 1).unwrap();
     desk.gdcm(&["check", "large.json"]).assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
     desk.gdcm(&["analyze", "large.json", "--out", "out"]).assert_failed(2, &["holds more than 128 MiB"]);
 }

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gdcm_core::assembly::{FoundModel, Headings};
-use gdcm_core::dataset::{Pair, StateSpace};
-use gdcm_core::response::evaluate;
-use gdcm_files::{EXPORTERS, ExportFormat, FolderProgress, load_dataset, read_models};
+use gdcm_io::{EXPORTERS, ExportFormat, FolderProgress, load_dataset, read_models};
+use gdcm_model::assembly::{FoundModel, Headings};
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::response::evaluate;
 use serde_json::{Value, json};
 
 use crate::commands::Desk;
@@ -145,8 +145,8 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
         for (place, condition) in dataset.conditions().iter().enumerate() {
             assert_eq!(contains[place]["delays"], "scheduled");
             assert_eq!(contains[place]["left_out"], json!([]));
-            let flown = &condition.bundle(gdcm_core::dataset::BundleKind::Identified)[0];
-            let gdcm_core::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else { panic!("no matrices") };
+            let flown = &condition.bundle(gdcm_model::dataset::BundleKind::Identified)[0];
+            let gdcm_model::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else { panic!("no matrices") };
             let (flown, found) = (evaluate(flown, &omega), evaluate(&state_space(&found[place]), &omega));
             for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
                 for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
@@ -289,9 +289,9 @@ fn corrected_models_are_the_program_s_in_every_format() {
     for (model, result) in found.iter().zip(entries(&corrections["conditions"])) {
         let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| result["id"] == of.id().0).unwrap();
         let representative = result["physics_representative"].as_str().unwrap();
-        let physics = condition.model(gdcm_core::dataset::BundleKind::Physics, representative).unwrap();
+        let physics = condition.model(gdcm_model::dataset::BundleKind::Physics, representative).unwrap();
         let figures = |metric: &str, side: &str| numbers(members(&result[metric][side]));
-        let gdcm_core::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
+        let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
         let (corrected, plain) = (evaluate(&state_space(model), &omega), evaluate(plain, &omega));
         for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
             for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
@@ -335,8 +335,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         side(&of["zero_rad_s"]) / side(&of["lag_rad_s"])
     };
     let physics = &crate::FEW.dataset.conditions()[0];
-    let nominal = &physics.bundle(gdcm_core::dataset::BundleKind::Physics)[physics.nominal()];
-    let gdcm_core::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
+    let nominal = &physics.bundle(gdcm_model::dataset::BundleKind::Physics)[physics.nominal()];
+    let gdcm_model::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
     let omega = [0.5, 3.0, 12.0, 120.0];
     let (corrected, plain) = (evaluate(&state_space(&found[0]), &omega), evaluate(plain, &omega));
     let [input_leads, output_leads] = ["inputs", "outputs"].map(|side| members(&at["lead"][side]));
@@ -396,8 +396,8 @@ fn the_filter_of_the_c_header_leads_a_sine() {
     let output = Command::new(desk.path("main")).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
     let [zero_s, s, c] = [0, 1, 2].map(|at| text.split_whitespace().nth(at).unwrap().parse::<f64>().unwrap());
-    let filter = gdcm_core::response::LeadFilter::new(
-        gdcm_core::response::LeadOrder::Second,
+    let filter = gdcm_model::response::LeadFilter::new(
+        gdcm_model::response::LeadOrder::Second,
         2.0_f64.sqrt() * (zero_s - 1.0 / 36.0),
         1.0 / 36.0,
     );

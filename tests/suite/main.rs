@@ -4,14 +4,14 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use gdcm_files::{DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes};
+use gdcm_io::{DatasetOrigin, LoadedDataset, embedded_example, load_dataset, load_dataset_bytes};
 
 mod assembling;
 mod commands;
 mod couplings;
 mod documents;
 mod exports;
-#[path = "../../crates/gdcm-files/tests/suite/made_up.rs"]
+#[path = "../../crates/gdcm-io/tests/suite/made_up.rs"]
 mod made_up;
 mod messages;
 mod outputs;

@@ -1,14 +1,14 @@
 //! What messages say, whatever the names, the numbers and the mistakes.
 
-use gdcm_core::message_text::sanitized;
+use gdcm_model::message_text::sanitized;
 use std::io::Write;
 use std::path::Path;
 
-use gdcm_core::correction::GainBounds;
-use gdcm_core::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm_core::study::{Kind, SETTINGS, Study, setting};
-use gdcm_core::units::number;
-use gdcm_files::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, save_study};
+use gdcm_io::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, save_study};
+use gdcm_method::correction::GainBounds;
+use gdcm_model::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::units::number;
+use gdcm_study::study::{Kind, SETTINGS, Study, setting};
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -75,7 +75,7 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
 
 #[test]
 fn the_bounds_that_a_message_names_are_those_that_are_refused() {
-    let study = Study::new(gdcm_files::embedded_example().unwrap().dataset);
+    let study = Study::new(gdcm_io::embedded_example().unwrap().dataset);
     for setting in SETTINGS {
         let (Kind::Number { range, .. } | Kind::Optional { range, .. }) = setting.kind else { continue };
         let is_whole = matches!(setting.kind, Kind::Number { whole: true, .. });

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
 use gdcm::view::state::NoticeKind;
-use gdcm_core::study::Study;
-use gdcm_files::{load_dataset, save_study};
+use gdcm_io::{load_dataset, save_study};
+use gdcm_study::study::Study;
 
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};

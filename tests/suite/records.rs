@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use gdcm_core::assembly::standard_patterns;
-use gdcm_core::dataset::{BundleKind, ConditionId, RecordKind};
-use gdcm_core::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
-use gdcm_files::{embedded_example, example_records, load_dataset, records_of_bytes};
+use gdcm_io::{embedded_example, example_records, load_dataset, records_of_bytes};
+use gdcm_model::assembly::standard_patterns;
+use gdcm_model::dataset::{BundleKind, ConditionId, RecordKind};
+use gdcm_sysid::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
 
@@ -22,8 +22,7 @@ pub(crate) fn archive() -> Vec<u8> {
 #[ignore = "all 99 records; those of two conditions are enough by default"]
 fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() {
     let found =
-        records_of_bytes(&archive(), "example-records.zip", &gdcm_files::variables::ReadingBudget::new(1 << 30))
-            .unwrap();
+        records_of_bytes(&archive(), "example-records.zip", &gdcm_io::variables::ReadingBudget::new(1 << 30)).unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));
     let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset).of_named_records();
     let patterns = standard_patterns();

@@ -5,15 +5,15 @@ use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
-use gdcm_core::identification::Preparation;
-use gdcm_core::records::{LaidOutRecord, RecordChannels, TimeWish};
-use gdcm_core::requirements::ToleranceTable;
-use gdcm_core::study::{
+use gdcm_io::{ReportSource, ReportSubject, example_records, load_dataset, report, save_study};
+use gdcm_method::requirements::ToleranceTable;
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_study::study::{
     Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, KnownPoles, Progress, RequirementRole, Study,
     Unobserved, time_histories_of,
 };
-use gdcm_files::{ReportSource, ReportSubject, example_records, load_dataset, report, save_study};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 

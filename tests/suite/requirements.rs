@@ -227,16 +227,16 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
 
 #[test]
 fn what_requirements_are_asked_with_comes_back_with_the_study() {
-    use gdcm_core::study::{Edit, OverviewLimits, RequirementSettings, Study};
+    use gdcm_study::study::{Edit, OverviewLimits, RequirementSettings, Study};
     let desk = Desk::new();
-    let loaded = gdcm_files::load_dataset(&desk.path("small.json")).unwrap();
+    let loaded = gdcm_io::load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
     let mut settings = RequirementSettings::clone(&study.requirements);
     let levels = r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
     settings.levels = serde_json::from_str(levels).unwrap();
     let mut rows = settings.tolerances.rows().to_vec();
     rows[0].absolute = 4.25;
-    settings.tolerances = gdcm_core::requirements::ToleranceTable::new("edited", rows).unwrap();
+    settings.tolerances = gdcm_method::requirements::ToleranceTable::new("edited", rows).unwrap();
     let mut modes = settings.mode_tolerances.rows().to_vec();
     modes[1].period_s = Some(0.75);
     settings.mode_tolerances = modes.try_into().unwrap();
@@ -244,8 +244,8 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
     settings.attitude_command.insert("P".to_owned());
     study.apply(&Edit::SetRequirements("levels", std::sync::Arc::new(settings))).unwrap();
     let path = desk.path("a.gdcm-study.json");
-    gdcm_files::save_study(&study, &loaded, &path).unwrap();
-    let opened = gdcm_files::open_study(&path).unwrap();
+    gdcm_io::save_study(&study, &loaded, &path).unwrap();
+    let opened = gdcm_io::open_study(&path).unwrap();
     assert_eq!(opened.study.requirements, study.requirements);
     // The command takes them from the study.
     desk.gdcm(&["requirements", "a.gdcm-study.json", "--write-tolerances", "mine.json"]).assert_done();
@@ -254,23 +254,23 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
 
 #[test]
 fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
-    use gdcm_core::executor::{Executor, Sequential};
-    use gdcm_core::study::{Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved};
-    use gdcm_files::figure::{Mark, record_history_figure};
+    use gdcm_model::executor::{Executor, Sequential};
+    use gdcm_plot::figure::{Mark, record_history_figure};
+    use gdcm_study::study::{Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved};
     let dataset = crate::FEW.dataset.clone();
     let analysis = Engine::default().analyze(&Study::new(dataset.clone()), &Unobserved).unwrap();
-    let channels = gdcm_core::records::RecordChannels::of_dataset(&dataset).of_named_records();
-    let table = gdcm_files::example_records(3).unwrap().remove(0);
-    let record = gdcm_core::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
+    let channels = gdcm_sysid::records::RecordChannels::of_dataset(&dataset).of_named_records();
+    let table = gdcm_io::example_records(3).unwrap().remove(0);
+    let record = gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());
     let (inputs, outputs) = dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let job = RecordHistoryJob {
         tolerances: analysis.study.requirements.tolerances.clone(),
         analysis: std::sync::Arc::new(analysis).into(),
-        condition: gdcm_core::dataset::ConditionId(3),
+        condition: gdcm_model::dataset::ConditionId(3),
         record: HistoryRecord { flight: flight.into(), held_out: false },
-        preparation: gdcm_core::identification::Preparation::of(&inputs, &outputs),
+        preparation: gdcm_sysid::identification::Preparation::of(&inputs, &outputs),
     };
     let mut executor: Box<dyn Executor> = Box::new(Sequential);
     let history = job.run(&mut executor, &Unobserved).unwrap().unwrap();

@@ -1,7 +1,7 @@
 //! Fourier transforms and convex programs of other crates, behind functions without type parameters.
 //!
 //! Their algorithms are generic, and would be compiled anew with every build and every test of the crate that uses them: a
-//! quarter of the instructions of `gdcm-core`. Here they are compiled once.
+//! quarter of the instructions of `gdcm-method` and `gdcm-sysid`. Here they are compiled once.
 
 use std::sync::Arc;
 

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use gdcm_core::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
+use gdcm_model::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
 use crate::view::{Command, Sorting};
-use gdcm_files::UnsaidUnit;
+use gdcm_io::UnsaidUnit;
 
 use super::{COLUMNS, Preview};
 

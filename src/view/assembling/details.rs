@@ -6,11 +6,11 @@ use std::sync::Arc;
 use egui::{Grid, RichText, Role, Ui};
 use nalgebra::Complex;
 
-use gdcm_core::assembly::{ChannelLabel, FoundModel, Part, RowRole, RowRule, Signs};
-use gdcm_core::dataset::{Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace};
-use gdcm_core::response::{FrequencyGrid, PreparedModel, ResponseShape};
-use gdcm_core::units::number;
-use gdcm_files::UnsaidUnit;
+use gdcm_io::UnsaidUnit;
+use gdcm_model::assembly::{ChannelLabel, FoundModel, Part, RowRole, RowRule, Signs};
+use gdcm_model::dataset::{Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_model::response::{FrequencyGrid, PreparedModel, ResponseShape};
+use gdcm_model::units::number;
 
 use super::{AssemblingCommand, AssemblyState};
 use crate::view::plot::{

@@ -7,9 +7,9 @@ mod table;
 
 use egui::{Button, CentralPanel, CollapsingHeader, Frame, Grid, Margin, Panel, RichText, Role, ScrollArea, Ui};
 
-use gdcm_core::assembly::{ChannelRule, FileScope, ProblemKind, Rules, Signs, UnitRule};
-use gdcm_core::dataset::ChannelSide;
-use gdcm_core::units::number;
+use gdcm_model::assembly::{ChannelRule, FileScope, ProblemKind, Rules, Signs, UnitRule};
+use gdcm_model::dataset::ChannelSide;
+use gdcm_model::units::number;
 
 use super::{
     Asks, Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,

@@ -3,8 +3,8 @@
 use egui::{Align, Button, Color32, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2};
 
 use crate::view::{Asks, Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text};
-use gdcm_core::assembly::Part;
-use gdcm_core::units::number;
+use gdcm_model::assembly::Part;
+use gdcm_model::units::number;
 
 use super::{AssemblingCommand, AssemblyState, columns_ui};
 use crate::view::palette::small;

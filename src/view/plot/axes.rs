@@ -4,9 +4,9 @@ use std::ops::RangeInclusive;
 
 use egui::{Align2, Color32, FontId, Id, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{Axis, AxisHints, GridInput, GridMark, Plot};
-use gdcm_core::units::{db_to_ratio, ratio_to_db};
-pub use gdcm_files::figure::FrequencyUnit;
-use gdcm_files::figure::{Range, Scale, Tick, TickGaps, compact, ticks_of};
+use gdcm_model::units::{db_to_ratio, ratio_to_db};
+pub use gdcm_plot::figure::FrequencyUnit;
+use gdcm_plot::figure::{Range, Scale, Tick, TickGaps, compact, ticks_of};
 
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 

@@ -3,7 +3,7 @@
 use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui, Vec2, WidgetInfo, vec2,
 };
-use gdcm_files::figure::{Range, compact};
+use gdcm_plot::figure::{Range, compact};
 
 use super::axes::Ticks;
 use super::bode::BodeScene;
@@ -207,7 +207,7 @@ impl PlotAxis {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_files::figure::FrequencyUnit;
+    use gdcm_plot::figure::FrequencyUnit;
 
     use super::*;
 

@@ -6,8 +6,8 @@ use egui::{
     Align2, Color32, CursorIcon, Id, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
-use gdcm_core::units::signed;
-use gdcm_files::figure::CoherenceCurve;
+use gdcm_model::units::signed;
+use gdcm_plot::figure::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{

@@ -5,7 +5,7 @@ use egui::{
     Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{Axis, FilledArea, LineStyle, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span, VLine};
-pub use gdcm_files::figure::{BodeBand, Level, ReferenceKind, ReferenceLine};
+pub use gdcm_plot::figure::{BodeBand, Level, ReferenceKind, ReferenceLine};
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
 use super::axis_strip::axis_strips_ui;

@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
-use gdcm_files::figure::{Range, fitted_values};
+use gdcm_plot::figure::{Range, fitted_values};
 
 use super::axis_strip::{LimitsForm, PlotAxis};
 use super::bode::{BodeScene, PANES};

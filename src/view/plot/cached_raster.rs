@@ -143,7 +143,7 @@ impl StillImage {
 #[cfg(test)]
 mod tests {
     use egui::{RawInput, vec2};
-    use gdcm_files::figure::Dash;
+    use gdcm_plot::figure::Dash;
 
     use super::*;
 

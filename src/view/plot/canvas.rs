@@ -3,7 +3,7 @@
 
 use egui::epaint::TextShape;
 use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
-use gdcm_files::figure::{Area, Figure, Sample, Shape as Drawn, Stroke as Line, Text, dot_shapes};
+use gdcm_plot::figure::{Area, Figure, Sample, Shape as Drawn, Stroke as Line, Text, dot_shapes};
 
 use crate::view::palette::Palette;
 

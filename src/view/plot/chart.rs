@@ -10,7 +10,7 @@ use egui_plot::{
     Axis, FilledArea, Line, LineStyle, MarkerShape, Plot, PlotImage, PlotPoint, PlotPoints, PlotUi, Points, Span, VLine,
 };
 
-use gdcm_files::figure::{Pixel, thinned};
+use gdcm_plot::figure::{Pixel, thinned};
 
 use super::Range;
 use super::axes::{

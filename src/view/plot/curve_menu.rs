@@ -3,7 +3,7 @@
 use egui::{
     Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui, WidgetInfo,
 };
-use gdcm_core::study::ExplainTarget;
+use gdcm_study::study::ExplainTarget;
 
 use super::bode::{BodeEvent, BodeScene};
 use super::bode_view::BodeView;

@@ -1,8 +1,8 @@
 //! Colour, width and pattern of a line.
 
 use egui::{Color32, Pos2, Shape, Stroke};
-pub use gdcm_files::figure::Role;
-use gdcm_files::figure::{Color, Dash, Hue};
+pub use gdcm_plot::figure::Role;
+use gdcm_plot::figure::{Color, Dash, Hue};
 
 use crate::view::palette::Palette;
 
@@ -93,7 +93,7 @@ impl Palette {
     }
 
     /// A line as this theme draws it, as wide as the engineer wants it.
-    pub fn curve_style(&self, line: gdcm_files::figure::Stroke) -> CurveStyle {
+    pub fn curve_style(&self, line: gdcm_plot::figure::Stroke) -> CurveStyle {
         let length = match line.dash {
             Dash::Solid => 0.0,
             Dash::Long => 9.0,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use egui::{Color32, Pos2, Shape, Ui};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
-pub use gdcm_files::figure::{BodeCurve, CurveId, LogFrequencies, Pane};
-use gdcm_files::figure::{Pixel, thinned};
+pub use gdcm_plot::figure::{BodeCurve, CurveId, LogFrequencies, Pane};
+use gdcm_plot::figure::{Pixel, thinned};
 
 use super::curve_style::CurveStyle;
 use crate::view::palette::Palette;

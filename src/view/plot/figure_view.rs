@@ -7,10 +7,10 @@ use egui::{
     pos2, vec2,
 };
 use egui_plot::{Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform};
-use gdcm_core::study::ExplainTarget;
-use gdcm_files::figure::{
+use gdcm_plot::figure::{
     Along, Area, Dots, Figure, FrequencyUnit, Mark, MarkId, Panel, Plot, Range, Scale, Shape, dot_shapes,
 };
+use gdcm_study::study::ExplainTarget;
 
 use super::axes::{
     LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use egui::{Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
 
-use gdcm_files::figure::Dash;
+use gdcm_plot::figure::Dash;
 
 use super::bode::BodeEvent;
 use super::curve_style::{CurveStyle, Role};

@@ -19,7 +19,7 @@ mod quantity;
 mod readout;
 mod tiles;
 
-pub use gdcm_files::figure::{Across, FrequencyUnit, Measure, Range, decimals};
+pub use gdcm_plot::figure::{Across, FrequencyUnit, Measure, Range, decimals};
 
 pub use bode::*;
 pub use bode_pane::*;

@@ -4,7 +4,7 @@ use egui::{
     Context, EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
-use gdcm_files::figure::{MarkId, Panel, Range};
+use gdcm_plot::figure::{MarkId, Panel, Range};
 
 use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};

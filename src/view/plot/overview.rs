@@ -7,8 +7,8 @@ use egui::{
     Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
-use gdcm_core::dataset::Pair;
-use gdcm_files::figure::{Range, decimals};
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::{Range, decimals};
 
 use super::axes::{caption_font, message_ui};
 use super::bode::PANES;

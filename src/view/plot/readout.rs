@@ -1,8 +1,8 @@
 //! What curves have where the pointer is: the one that it means in words, the roles in a strip between the panes.
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
-use gdcm_core::response::wrap;
-use gdcm_files::figure::decimals;
+use gdcm_model::response::wrap;
+use gdcm_plot::figure::decimals;
 
 use super::axes::FrequencyUnit;
 use super::bode_view::BodeView;

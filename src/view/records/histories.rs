@@ -8,11 +8,11 @@ use egui::{ColorImage, Id, Label, Rect, RichText, ScrollArea, Sense, TextureHand
 
 use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch};
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
-use gdcm_core::dataset::Band;
-use gdcm_core::executor::Sequential;
-use gdcm_core::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
-use gdcm_core::records::{LaidOutRecord, ModeSpan, Spectrogram};
-use gdcm_core::units::telling;
+use gdcm_model::dataset::Band;
+use gdcm_model::executor::Sequential;
+use gdcm_model::units::telling;
+use gdcm_sysid::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
+use gdcm_sysid::records::{LaidOutRecord, ModeSpan, Spectrogram};
 
 use super::{ConditionRecords, Page, RecordsCommand, numbers, simulated, time_models_ui};
 
@@ -235,7 +235,7 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     let Some(found) = records.identification().filter(|_| !records.changed) else { return parts };
     let record = (0..found.record_uses.len()).find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
-    let span = |gap: &gdcm_core::identification::Gap| {
+    let span = |gap: &gdcm_sysid::identification::Gap| {
         let color = match gap.treatment {
             Treatment::Bridged => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),

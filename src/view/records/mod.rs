@@ -16,12 +16,12 @@ use egui::{
     ScrollArea, Ui,
 };
 
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::identification::{HIGHEST_ORDER, LONGEST_PAST, SearchSpace};
-use gdcm_core::records::LayoutProblem;
-use gdcm_core::study::Table;
-use gdcm_core::units::{number, six_digits};
-use gdcm_files::figure::decimals;
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::units::{number, six_digits};
+use gdcm_plot::figure::decimals;
+use gdcm_study::study::Table;
+use gdcm_sysid::identification::{HIGHEST_ORDER, LONGEST_PAST, SearchSpace};
+use gdcm_sysid::records::LayoutProblem;
 
 use super::controls::page_tab_ui;
 use super::tables::{TableLook, table_ui};

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use egui::{Label, ProgressBar, RichText, Ui};
 
 use crate::view::{Asks, Command, Palette, SMALL_SIZE};
-use gdcm_core::dataset::{BundleKind, ChannelRemedy, ChannelSide, Pair};
-use gdcm_core::identification::{
+use gdcm_model::dataset::{BundleKind, ChannelRemedy, ChannelSide, Pair};
+use gdcm_model::units::s_to_ms;
+use gdcm_study::study::{ChannelTimeSkew, OfferedModels};
+use gdcm_sysid::identification::{
     ChannelPreparation, ContradictingRecord, HELD_OUT, Hold, Identification, IdentificationCaution,
     IdentificationError, RecordCaution, RecordFault, Signal,
 };
-use gdcm_core::records::LaidOutRecord;
-use gdcm_core::study::{ChannelTimeSkew, OfferedModels};
-use gdcm_core::units::s_to_ms;
+use gdcm_sysid::records::LaidOutRecord;
 
 use super::{
     BAD, CHI_SQUARED, ConditionRecords, ORDERS, Page, REFERENCES, RecordsCommand, RecordsPage, Source, kept,

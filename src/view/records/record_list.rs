@@ -4,10 +4,10 @@ use egui::{Align, Checkbox, Grid, Label, Layout, RichText, Role as AccessRole, S
 
 use crate::view::controls::list_ui;
 use crate::view::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch, number_entry_ui};
-use gdcm_core::dataset::{ChannelRemedy, ChannelSide, RecordKind};
-use gdcm_core::identification::Signal;
-use gdcm_core::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
-use gdcm_core::units::{ms_to_s, number, s_to_ms};
+use gdcm_model::dataset::{ChannelRemedy, ChannelSide, RecordKind};
+use gdcm_model::units::{ms_to_s, number, s_to_ms};
+use gdcm_sysid::identification::Signal;
+use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
 
 use super::{ConditionRecords, Page, RecordsCommand};
 

@@ -6,17 +6,17 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use gdcm_core::assembly::ChannelRule;
-use gdcm_core::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
-use gdcm_core::identification::{
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_model::units::{number, telling};
+use gdcm_study::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
+use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
 };
-use gdcm_core::records::{
+use gdcm_sysid::records::{
     ChannelList, ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout, RecordSource,
     RecordTable, ResamplingWish, SaidChannel,
 };
-use gdcm_core::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
-use gdcm_core::units::{number, telling};
 
 use super::TimeModel;
 use crate::view::{Palette, Sorting, State, typed_number};

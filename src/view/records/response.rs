@@ -8,13 +8,13 @@ use crate::view::controls::text_width;
 use crate::view::palette::small;
 use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
 use crate::view::{Palette, State, named, painted_text};
-use gdcm_core::dataset::{Pair, StateSpace};
-use gdcm_core::identification::{
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::response::{ResponseShape, evaluate};
+use gdcm_model::units::neper_to_db;
+use gdcm_sysid::identification::{
     CautionNote, EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate, StabilisationPoint,
     TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
 };
-use gdcm_core::response::{ResponseShape, evaluate};
-use gdcm_core::units::neper_to_db;
 use nalgebra::Complex;
 
 use super::{Page, kept};

@@ -6,10 +6,10 @@ use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 
 use crate::view::plot::ChartLine;
 use crate::view::{Command, Palette, SMALL_SIZE, State};
-use gdcm_core::correction::Pade;
-use gdcm_core::dataset::{BundleKind, StateSpace};
-use gdcm_core::identification::Validation;
-use gdcm_core::study::SimulationJob;
+use gdcm_method::correction::Pade;
+use gdcm_model::dataset::{BundleKind, StateSpace};
+use gdcm_study::study::SimulationJob;
+use gdcm_sysid::identification::Validation;
 
 use super::{ConditionRecords, Page, RecordsCommand, cost_text, kept};
 

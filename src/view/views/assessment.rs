@@ -1,15 +1,15 @@
 //! What the correction is worth, condition by condition.
 
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
-use gdcm_core::dataset::{Condition, ConditionId, Pair};
-use gdcm_core::fidelity::CostAverage;
-use gdcm_core::schedule::CostChange;
-use gdcm_core::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table, held_out_verdict,
-};
-use gdcm_files::figure::{
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::{Condition, ConditionId, Pair};
+use gdcm_plot::figure::{
     Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans, Stroke, change_table,
     decimals,
+};
+use gdcm_study::study::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table, held_out_verdict,
 };
 
 use super::View;

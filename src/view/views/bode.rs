@@ -2,10 +2,10 @@
 //! response of a condition, small.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::{AcrossJob, AcrossRole, Undefined, display_band};
-use gdcm_core::units::{number, ratio_to_db, s_to_ms};
-use gdcm_files::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::{number, ratio_to_db, s_to_ms};
+use gdcm_plot::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
+use gdcm_study::study::{AcrossJob, AcrossRole, Undefined, display_band};
 
 use super::View;
 use super::frequency::{

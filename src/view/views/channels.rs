@@ -1,10 +1,10 @@
 //! Channel gains against airspeed.
 
 use egui::{Align2, FontId, Rect, Ui, Vec2, pos2, vec2};
-use gdcm_core::study::{Edit, ExplainTarget, Uncertainty};
-use gdcm_core::uncertainty::{Bar, Scalar};
-use gdcm_core::units::s_to_ms;
-use gdcm_files::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten};
+use gdcm_method::uncertainty::{Bar, Scalar};
+use gdcm_model::units::s_to_ms;
+use gdcm_plot::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten};
+use gdcm_study::study::{Edit, ExplainTarget, Uncertainty};
 
 use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
-use gdcm_core::couplings::LEAST_CONDITIONS;
-use gdcm_core::dataset::Dataset;
-use gdcm_core::study::{
+use gdcm_method::couplings::LEAST_CONDITIONS;
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::telling;
+use gdcm_study::study::{
     CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection, RemarkKind, Table, setting,
 };
-use gdcm_core::units::telling;
 
 use super::View;
 use super::frequency::condition_source;

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use egui::{Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2};
-use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
-use gdcm_core::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
-use gdcm_core::uncertainty::VarianceDecomposition;
-use gdcm_core::units::{s_to_ms, signed};
+use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
+use gdcm_method::uncertainty::VarianceDecomposition;
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::units::{s_to_ms, signed};
+use gdcm_study::study::{Analysis, Table, Uncertainty, difference_table, second_variable_table, setting};
 
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;

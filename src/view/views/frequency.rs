@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use egui::Ui;
-use gdcm_core::dataset::{Band, BundleKind, ModelId, Pair};
-use gdcm_core::fidelity::summand;
-use gdcm_core::response::wrap;
-use gdcm_core::study::{Edit, setting};
-use gdcm_core::units::telling;
-use gdcm_files::figure::{BodeOptions, ConditionSource};
+use gdcm_method::fidelity::summand;
+use gdcm_model::dataset::{Band, BundleKind, ModelId, Pair};
+use gdcm_model::response::wrap;
+use gdcm_model::units::telling;
+use gdcm_plot::figure::{BodeOptions, ConditionSource};
+use gdcm_study::study::{Edit, setting};
 
 use super::compare::overlaid_analysis;
 use crate::view::command::Command;
@@ -336,7 +336,7 @@ fn largest_error((corrected, identified): (&BodeCurve, &BodeCurve), (min, max): 
 mod tests {
     use super::*;
     use crate::view::plot::CurveId;
-    use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
+    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
     fn flat(name: &str, role: Role, magnitude_db: f64, phase_deg: f64) -> BodeCurve {
         BodeCurve {

@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
-use gdcm_core::requirements::{TestInput, TestInputShape};
-use gdcm_core::study::{Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend};
-use gdcm_core::units::number;
-use gdcm_files::figure::{Figure, FigureKind, OverTime};
+use gdcm_method::requirements::{TestInput, TestInputShape};
+use gdcm_model::units::number;
+use gdcm_plot::figure::{Figure, FigureKind, OverTime};
+use gdcm_study::study::{Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend};
 
 use super::{Need, RequirementsPage, View, decided, tolerances_ui};
 use crate::view::command::Command;

@@ -1,10 +1,10 @@
 //! What delay or lead does in each channel of the condition, and what leads cost above the band.
 
 use egui::{Panel, Ui, vec2};
-use gdcm_core::correction::{Channel, LeadPrice};
-use gdcm_core::study::{PhaseCorrection, Table};
-use gdcm_core::units::{number, s_to_ms, signed, telling};
-use gdcm_files::figure::{Figure, FigureKind, FigureRequest, all_channels};
+use gdcm_method::correction::{Channel, LeadPrice};
+use gdcm_model::units::{number, s_to_ms, signed, telling};
+use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
+use gdcm_study::study::{PhaseCorrection, Table};
 
 use super::View;
 use super::frequency::condition_source;

@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::{
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::FigureKind;
+use gdcm_study::study::{
     AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
     SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
 };
-use gdcm_files::figure::FigureKind;
 use serde::{Deserialize, Serialize};
 
 use super::{Command, Palette, State, ViewGroup};

@@ -2,9 +2,9 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
-use gdcm_core::dataset::Pair;
-use gdcm_core::study::setting;
-use gdcm_files::figure::{Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words};
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::{Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words};
+use gdcm_study::study::setting;
 use serde::{Deserialize, Serialize};
 
 use super::View;

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use egui::{Panel, Ui, Vec2, vec2};
-use gdcm_core::couplings::PoleShift;
-use gdcm_core::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use gdcm_core::requirements::{ModeName, NamedBy};
-use gdcm_core::response::{Mode, finite_zeros};
-use gdcm_core::study::{ConditionAnalysis, ConditionModes, Edit, FittedCouplings, Table};
-use gdcm_core::units::number;
-use gdcm_files::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
+use gdcm_method::couplings::PoleShift;
+use gdcm_method::requirements::{ModeName, NamedBy};
+use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_model::response::{Mode, finite_zeros};
+use gdcm_model::units::number;
+use gdcm_plot::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
+use gdcm_study::study::{ConditionAnalysis, ConditionModes, Edit, FittedCouplings, Table};
 use nalgebra::Complex;
 
 use super::View;

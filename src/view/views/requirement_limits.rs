@@ -1,9 +1,9 @@
 //! The tables that requirements are asked with, in fields: tolerances of time histories and of modes, limits of the overview (M17).
 
 use egui::{Button, Grid, Ui};
-use gdcm_core::requirements::{ModeToleranceTable, ToleranceTable};
-use gdcm_core::study::OverviewLimits;
-use gdcm_core::units::number;
+use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
+use gdcm_model::units::number;
+use gdcm_study::study::OverviewLimits;
 
 use super::decided;
 use crate::view::command::{Command, RequirementTable};

@@ -4,15 +4,15 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
-use gdcm_core::dataset::{ConditionId, Pair};
-use gdcm_core::fidelity::ACCEPTABLE;
-use gdcm_core::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
-use gdcm_core::study::{
+use gdcm_method::fidelity::ACCEPTABLE;
+use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
+use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::units::{s_to_ms, telling};
+use gdcm_plot::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
+use gdcm_study::study::{
     Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table,
-    TimeHistoriesJob,
+    TimeHistoriesJob, mode_verdict_words,
 };
-use gdcm_core::units::{s_to_ms, telling};
-use gdcm_files::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
 
 use super::{Need, View, current, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
 use crate::view::CurveCommand;
@@ -354,7 +354,7 @@ fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     if !table.columns[column].ends_with(": tolerance") {
         return None;
     }
-    let is = |verdict: ModeVerdict| table.rows[row][column].starts_with(verdict.words());
+    let is = |verdict: ModeVerdict| table.rows[row][column].starts_with(mode_verdict_words(verdict));
     Some(match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
         (true, _) => Hue::Good,
         (_, true) => Hue::Warning,

@@ -5,9 +5,9 @@ use gdcm::view::command::FormKind;
 use gdcm::view::command_table::command_table;
 use gdcm::view::command_table::every_command;
 use gdcm::view::tables::{TableKind, table_of};
-use gdcm_core::correction::Channel;
-use gdcm_core::study::Table;
-use gdcm_core::uncertainty::Scalar;
+use gdcm_method::correction::Channel;
+use gdcm_method::uncertainty::Scalar;
+use gdcm_study::study::Table;
 
 use super::views::give;
 use super::*;

@@ -4,10 +4,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::app::threads;
-use gdcm_core::correction::{Outcome, ProofBudget};
-use gdcm_core::dataset::Condition;
-use gdcm_core::executor::{Executor, Task};
-use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
+use gdcm_method::correction::{Outcome, ProofBudget};
+use gdcm_model::dataset::Condition;
+use gdcm_model::executor::{Executor, Task};
+use gdcm_study::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
 use super::views::show;
 use super::*;

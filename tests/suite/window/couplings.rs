@@ -5,9 +5,9 @@ use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::cost_map::{MappedCost, cost_of};
 use gdcm::view::views::offered_couplings;
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::study::{CouplingCorrection, Edit, PhaseCorrection, setting};
-use gdcm_files::figure::Mark;
+use gdcm_model::dataset::ConditionId;
+use gdcm_plot::figure::Mark;
+use gdcm_study::study::{CouplingCorrection, Edit, PhaseCorrection, setting};
 
 use super::lists::texts_in;
 use super::views::{give, show};

@@ -5,7 +5,7 @@ use super::views::show;
 use super::*;
 use gdcm::view::View;
 use gdcm::view::plot::PICK_RADIUS;
-use gdcm_files::figure::{BodeOptions, ConditionSource};
+use gdcm_plot::figure::{BodeOptions, ConditionSource};
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {

@@ -1,6 +1,6 @@
 //! Decisions, by hand, and what they give.
 
-use gdcm_core::study::derivation;
+use gdcm_study::study::derivation;
 
 use super::views::give;
 use super::*;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use gdcm_files::{DatasetOrigin, load_dataset_bytes};
+use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;
 use super::*;

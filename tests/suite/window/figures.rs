@@ -4,8 +4,8 @@ use std::fs;
 
 use gdcm::view::View;
 use gdcm::view::figures::{figure_of, views_with_figure};
-use gdcm_files::figure::{ColumnWidth, FigureFormat};
-use gdcm_files::{csv_text, write_as};
+use gdcm_io::{csv_text, write_as};
+use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 
 use super::views::show;
 use super::*;
@@ -53,7 +53,7 @@ fn coherence_of_measured_responses_stands_below_their_bode_plot() {
     window.get_by_label_contains(&format!("Coherence of {title}"));
     let figure = figure_of(state(&window), View::Bode).unwrap();
     let strip = figure.plots[0].panels.get(2).expect("magnitude, phase, coherence");
-    assert!(strip.marks.iter().any(|mark| matches!(mark, gdcm_files::figure::Mark::Curve(of) if !of.x.is_empty())));
+    assert!(strip.marks.iter().any(|mark| matches!(mark, gdcm_plot::figure::Mark::Curve(of) if !of.x.is_empty())));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
-use gdcm_core::study::{ExplainTarget, derivation};
+use gdcm_study::study::{ExplainTarget, derivation};
 
 use super::views::{give, show};
 use super::walk::stays_within;

@@ -3,7 +3,7 @@
 use egui::{Color32, Shape};
 use gdcm::view::command::{Command as Action, FormKind};
 use gdcm::view::palette::Palette;
-use gdcm_core::correction::GainBounds;
+use gdcm_method::correction::GainBounds;
 
 use super::views::give;
 use super::*;

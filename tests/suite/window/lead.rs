@@ -2,8 +2,8 @@
 
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
-use gdcm_core::study::{AssessedCorrection, PhaseCorrection, setting};
-use gdcm_core::units::signed;
+use gdcm_model::units::signed;
+use gdcm_study::study::{AssessedCorrection, PhaseCorrection, setting};
 
 use super::lists::texts_in;
 use super::views::{give, show};

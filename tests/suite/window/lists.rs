@@ -1,6 +1,6 @@
 //! What the lists say, and that it can be read.
 
-use gdcm_core::study::Edit;
+use gdcm_study::study::Edit;
 
 use super::views::give;
 use super::*;

@@ -47,10 +47,10 @@ use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
 use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
 use gdcm::view::state::{Notice, NoticeKind, State};
 use gdcm::view::views::channel_plots;
-use gdcm_core::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_core::study::{Engine, LIVE_PROOF, Study, Unobserved};
-use gdcm_files::figure::MarkId;
-use gdcm_files::{Opened, OpenedStudy, load_any, open_study};
+use gdcm_io::{Opened, OpenedStudy, load_any, open_study};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_plot::figure::MarkId;
+use gdcm_study::study::{Engine, LIVE_PROOF, Study, Unobserved};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 

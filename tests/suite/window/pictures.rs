@@ -16,7 +16,7 @@ use gdcm::view::View;
 use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::Command as Action;
 use gdcm::view::palette::Palette;
-use gdcm_core::study::Edit;
+use gdcm_study::study::Edit;
 
 use super::assembling::type_into;
 use super::views::{give, show};

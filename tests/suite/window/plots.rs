@@ -2,8 +2,8 @@
 
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
-use gdcm_core::study::AcrossRole;
-use gdcm_files::figure::{AirspeedCache, Range, airspeed_curves, fitted_values};
+use gdcm_plot::figure::{AirspeedCache, Range, airspeed_curves, fitted_values};
+use gdcm_study::study::AcrossRole;
 
 use super::lists::texts_in;
 use super::views::{give, show};

@@ -105,7 +105,7 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
     let mut window = window();
     choose_condition_10(&mut window);
     // A model that has everything that can be said of one: trim, ratio, distance, and why it is rejected.
-    let reject = gdcm_core::study::Edit::RejectBecause {
+    let reject = gdcm_study::study::Edit::RejectBecause {
         model: ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt"),
         reason: "a step near this trim".to_owned(),
     };
@@ -125,7 +125,7 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
 
 #[test]
 fn what_a_tooltip_does_not_say_is_behind_the_question() {
-    use gdcm_core::study::{ExplainTarget, derivation};
+    use gdcm_study::study::{ExplainTarget, derivation};
     let window = window();
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
     let found = derivation(state(&window).analysis().unwrap(), &ExplainTarget::Score(id)).unwrap();

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
-use gdcm_core::dataset::{Band, ChannelSide, RecordKind};
-use gdcm_core::identification::{SearchSpace, Signal};
-use gdcm_core::response::{FrequencyGrid, PreparedModel};
-use gdcm_core::study::setting;
+use gdcm_model::dataset::{Band, ChannelSide, RecordKind};
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
+use gdcm_study::study::setting;
+use gdcm_sysid::identification::{SearchSpace, Signal};
 
 use nalgebra::DMatrix;
 use serde_json::{Value, json};

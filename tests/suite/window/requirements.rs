@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use gdcm::view::View;
 use gdcm::view::views::RequirementsPage;
-use gdcm_core::dataset::ConditionId;
-use gdcm_core::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
-use gdcm_core::study::{BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings};
+use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::study::{BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -74,7 +74,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
     // The one that lies farthest from all other marks: nothing hides it.
-    let places = |of: &BandwidthFinding| gdcm_files::figure::bandwidth_place(of);
+    let places = |of: &BandwidthFinding| gdcm_plot::figure::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
         let Some([x, y]) = places(of) else { return -1.0 };
         let others = requirements.bandwidth.iter().filter(|other| other.pair == p_lat && !std::ptr::eq(*other, of));
@@ -82,7 +82,7 @@ fn a_click_on_a_mark_is_of_that_model() {
         others.filter_map(places).map(distance).fold(f64::INFINITY, f64::min)
     };
     let meant = requirements.bandwidth.iter().filter(of_role).max_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-    let plot = gdcm_files::figure::bandwidth_pairs(&requirements).iter().position(|of| *of == p_lat).unwrap();
+    let plot = gdcm_plot::figure::bandwidth_pairs(&requirements).iter().position(|of| *of == p_lat).unwrap();
     let at = state(&window).display.figures[&View::Requirements].position(plot, places(meant).unwrap()).unwrap();
     window.hover_at(at);
     window.run_steps(2);
@@ -99,7 +99,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     }
 }
 
-fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_core::study::Requirements> {
+fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_study::study::Requirements> {
     wait_until(window, "the requirements", |window| {
         let decided = &state(window).study.requirements.attitude_command;
         state(window).requirements().is_some_and(|of| of.attitude_command == *decided)
@@ -244,7 +244,7 @@ fn the_summary_has_what_the_records_that_are_open_say() {
 
     // What is saved is what is shown: both tables, and as numbers.
     let folder = tempfile::tempdir().unwrap();
-    let width = gdcm_files::figure::ColumnWidth::Double;
+    let width = gdcm_plot::figure::ColumnWidth::Double;
     let path = folder.path().join("summary.csv");
     give(&mut window, Action::SaveFigure(View::Requirements, width, path.clone()));
     let saved = std::fs::read_to_string(path).unwrap();

@@ -6,9 +6,9 @@ use gdcm::view::views::poles;
 use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
 use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm::view::{Arrangement, View, ViewGroup};
-use gdcm_core::correction::Channel;
-use gdcm_core::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
-use gdcm_files::figure::{DotShape, Mark, Panel};
+use gdcm_method::correction::Channel;
+use gdcm_plot::figure::{DotShape, Mark, Panel};
+use gdcm_study::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
 
 use super::*;
 
@@ -231,7 +231,7 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));
     show(&mut window, View::Assessment);
     let choice = gdcm::view::views::assessment_choice(state(&window));
-    let words = gdcm_core::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
+    let words = gdcm_study::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
     assert!(words.starts_with("held out (3): better in ") && words.contains("; the others: better in "), "{words}");
 }
 

@@ -3,7 +3,7 @@
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
-use gdcm_core::study::{Engine, Unobserved, setting};
+use gdcm_study::study::{Engine, Unobserved, setting};
 
 use super::*;
 use crate::made_up::tries;

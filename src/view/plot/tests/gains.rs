@@ -1,5 +1,5 @@
 use egui::vec2;
-use gdcm_files::figure::{
+use gdcm_plot::figure::{
     Axis, Bars, Color, Curve, Dot, DotShape, Dots, Figure, MarkId, Panel, Plot, Range, Role as CurveRole,
 };
 

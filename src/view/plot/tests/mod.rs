@@ -12,7 +12,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 
 use super::*;
-use gdcm_core::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
 /// The curve of a physics model with this number for a name.
 pub(super) fn numbered(number: u64) -> CurveId {

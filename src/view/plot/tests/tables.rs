@@ -3,7 +3,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::*;
 use crate::view::palette::{self, Palette};
-use gdcm_core::dataset::Pair;
+use gdcm_model::dataset::Pair;
 
 #[derive(Default)]
 struct Model {

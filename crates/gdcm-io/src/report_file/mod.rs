@@ -1,0 +1,105 @@
+//! The report of a study: one file in HTML that needs nothing else and prints on A4 and letter. The same study makes the same bytes.
+
+mod assessment;
+mod conditions;
+mod page;
+mod requirements;
+mod schedule;
+mod study;
+
+use std::path::Path;
+
+use gdcm_study::study::{Analysis, Cancelled, Engine, KnownPoles, Progress, TimeHistories};
+
+use super::dataset_file::LoadedDataset;
+use super::file_error::FileError;
+use super::output_set::OutputSet;
+use gdcm_model::message_text::sanitized;
+
+use page::Page;
+
+pub use study::assessment_sentence;
+
+const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
+
+/// What a report says of the files that a study is made of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReportSource {
+    /// The name of the study's file; none of a study that is not saved.
+    pub study: Option<String>,
+    /// The name of the dataset's file, or what stands for it.
+    pub dataset: String,
+    /// SHA-256 of that file, in hexadecimal.
+    pub sha256: String,
+    /// What is odd about it.
+    pub cautions: Vec<String>,
+}
+
+impl ReportSource {
+    /// The files of a study: its dataset, and its own where it has one. They are named without their folders, so that the report
+    /// is the same wherever they are.
+    pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
+        let study = study.and_then(Path::file_name).map(|name| sanitized(&name.to_string_lossy()));
+        let cautions = loaded.cautions.clone();
+        Self { study, dataset: loaded.file_name(), sha256: loaded.sha256.clone(), cautions }
+    }
+}
+
+/// What a report is about.
+#[derive(Clone, Copy, Debug)]
+pub struct ReportSubject<'a> {
+    /// The analysis, with the requirements of its study.
+    pub analysis: &'a Analysis,
+    /// What its models answer to flight records, where there are some.
+    pub histories: Option<&'a TimeHistories>,
+    /// The poles that were identified.
+    pub known: &'a KnownPoles,
+}
+
+/// The report of an analysis; `engine` has the responses that are drawn. Each condition is a step of the progress.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` says so.
+pub fn report(
+    subject: ReportSubject<'_>,
+    source: &ReportSource,
+    engine: &mut Engine,
+    progress: &dyn Progress,
+) -> Result<String, Cancelled> {
+    let with_bars = assessment::with_bars(subject.analysis, engine, progress)?;
+    let analysis = &assessment::with_couplings(with_bars, engine, progress)?;
+    let mut page = Page::default();
+    study::add_summary(&mut page, analysis);
+    study::add_settings(&mut page, &analysis.study);
+    study::add_files(&mut page, &analysis.study, source);
+    study::add_left_out(&mut page, analysis);
+    assessment::add_couplings(&mut page, analysis);
+    conditions::add(&mut page, analysis, engine, progress)?;
+    schedule::add_schedule(&mut page, analysis);
+    assessment::add_uncertainty(&mut page, analysis);
+    assessment::add_assessment(&mut page, analysis);
+    requirements::add_requirements(&mut page, ReportSubject { analysis, ..subject }, engine, progress)?;
+    page.section("The method");
+    page.fixed(include_str!("method.html"));
+    study::add_models(&mut page, &analysis.study);
+    let title = format!("Gain and delay corrections of {}", analysis.study.dataset.name());
+    let study = source.study.as_ref().map_or(String::new(), |study| format!("Study {study}. "));
+    Ok(page.finish(&title, &[format!("{study}Dataset {}. Made by {PROGRAM}.", source.dataset)]))
+}
+
+/// Tells whether the report is still wanted, and nothing of the steps within one of its own.
+struct Unobtrusive<'a>(&'a dyn Progress);
+
+impl Progress for Unobtrusive<'_> {
+    fn cancelled(&self) -> bool {
+        self.0.cancelled()
+    }
+
+    fn advanced(&self, _done: usize, _total: usize) {}
+}
+
+/// Writes a report, whole or not at all.
+pub fn save_report(report: &str, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
+    outputs.add(path, |file| file.write_all(report.as_bytes()))?;
+    outputs.persist()
+}

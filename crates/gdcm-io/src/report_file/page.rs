@@ -1,0 +1,311 @@
+//! A page that is written from top to bottom: numbered sections, tables and figures, and the list of what it holds; in markup that is
+//! HTML and well-formed XML at once.
+
+use gdcm_model::message_text::sanitized;
+use gdcm_study::study::Table;
+
+use gdcm_plot::figure::{ColumnWidth, Drawing, Figure};
+use gdcm_plot::paper::{escaped, inline_svg};
+
+/// Conditions that have figures; all have tables.
+pub(super) const CONDITIONS_DRAWN: usize = 60;
+/// Responses of a kind that have figures.
+pub(super) const PAIRS_DRAWN: usize = 40;
+/// Responses that a table of all of them may have; beyond, it has the on-axis and the held ones.
+pub(super) const PAIRS_LISTED: usize = 48;
+/// Models of a bundle that are listed and drawn.
+pub(super) const MODELS_SHOWN: usize = 40;
+/// Names in a sentence.
+pub(super) const NAMES_SHOWN: usize = 12;
+
+/// Names with commas; of many, the first, and how many more there are.
+pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
+    let shown = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    match all.len().saturating_sub(NAMES_SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+/// How far a line of a figure may be from the points that it stands for \[pt\]: less than the finest line is wide, so that it
+/// cannot be seen, and a quarter of the file.
+const TOLERANCE_PT: f64 = 0.1;
+/// Rows of a table; beyond, a file of results is the place to look.
+const ROWS: usize = 1000;
+/// A table of no more rows is not parted.
+const ROWS_ON_A_SHEET: usize = 30;
+/// Letters of a text that stands in one line.
+const SHORT: usize = 24;
+const STYLE: &str = include_str!("style.css");
+/// Nothing is fetched and nothing is run, whatever a page might hold.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
+
+/// A heading, as the contents list it.
+struct Heading {
+    number: String,
+    title: String,
+}
+
+/// A page being written.
+#[derive(Default)]
+pub(super) struct Page {
+    body: String,
+    headings: Vec<Heading>,
+    section: usize,
+    subsection: usize,
+    tables: usize,
+    figures: usize,
+}
+
+impl Page {
+    /// Begins a section.
+    pub(super) fn section(&mut self, title: &str) {
+        self.section += 1;
+        self.subsection = 0;
+        self.heading("h2", self.section.to_string(), title);
+    }
+
+    /// Begins a part of a section.
+    pub(super) fn subsection(&mut self, title: &str) {
+        self.subsection += 1;
+        self.heading("h3", format!("{}.{}", self.section, self.subsection), title);
+    }
+
+    fn heading(&mut self, tag: &str, number: String, title: &str) {
+        self.body.push_str(&format!("<{tag} id=\"s{number}\">{number} {}</{tag}>\n", words(title)));
+        self.headings.push(Heading { number, title: title.to_owned() });
+    }
+
+    /// A heading within a part, which the contents do not list.
+    pub(super) fn heading_within(&mut self, title: &str) {
+        self.body.push_str(&element("h4", title));
+    }
+
+    /// A paragraph.
+    pub(super) fn paragraph(&mut self, text: &str) {
+        self.body.push_str(&element("p", text));
+    }
+
+    /// A list; nothing where it is empty.
+    pub(super) fn list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        self.list_of("", items);
+    }
+
+    /// A list in small letters, of what only some will read.
+    pub(super) fn fine_list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        self.list_of(" class=\"fine\"", items);
+    }
+
+    fn list_of(&mut self, class: &str, items: impl IntoIterator<Item = impl AsRef<str>>) {
+        let items: String = items.into_iter().map(|item| element("li", item.as_ref())).collect();
+        if !items.is_empty() {
+            self.body.push_str(&format!("<ul{class}>\n{items}</ul>\n"));
+        }
+    }
+
+    /// What is known of one thing: names at the left, what they are at the right.
+    pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
+        self.body.push_str("<table class=\"facts\"><tbody>\n");
+        for (name, value) in facts {
+            self.body.push_str(&format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", words(name), words(&value)));
+        }
+        self.body.push_str("</tbody></table>\n");
+    }
+
+    /// A table under its title; its headings stand again on every sheet that it goes on to. Nothing where it has no rows.
+    pub(super) fn table(&mut self, table: &Table) {
+        if table.rows.is_empty() {
+            return;
+        }
+        let more = table.rows.len().saturating_sub(ROWS);
+        self.tables += 1;
+        let classes: Vec<&str> = (0..table.columns.len()).map(|column| class_of(table, column)).collect();
+        let row = |tag: &str, cells: &[String]| {
+            let cells = cells.iter().zip(&classes).map(|(text, class)| match *class {
+                "" => element(tag, text),
+                class => classed(tag, class, text),
+            });
+            format!("<tr>\n{}</tr>\n", cells.collect::<String>())
+        };
+        let class = if table.rows.len() <= ROWS_ON_A_SHEET { " class=\"whole\"" } else { "" };
+        let title = format!("Table {}. {}", self.tables, table.title);
+        self.body.push_str(&format!("<table{class}>\n{}<thead>\n", element("caption", &title)));
+        self.body.push_str(&row("th", &table.columns));
+        self.body.push_str("</thead>\n<tbody>\n");
+        self.body.extend(table.rows.iter().take(ROWS).map(|cells| row("td", cells)));
+        self.body.push_str("</tbody>\n</table>\n");
+        if more > 0 {
+            self.paragraph(&format!("{more} more rows are left out here."));
+        }
+    }
+
+    /// A table of which as many columns stand side by side as fit, each time behind the first.
+    pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
+        self.wide_table_behind(table, 1, columns);
+    }
+
+    /// The same behind the first `heads` columns.
+    pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
+        for from in (heads..table.columns.len()).step_by(columns) {
+            let part = |cells: &[String]| {
+                let to = (from + columns).min(cells.len());
+                cells[..heads].iter().chain(&cells[from..to]).cloned().collect::<Vec<_>>()
+            };
+            let mut sheet = Table::new(table.title.clone(), part(&table.columns));
+            sheet.rows = table.rows.iter().map(|row| part(row)).collect();
+            self.table(&sheet);
+        }
+    }
+
+    /// A figure under its number, with these words in place of its own title and caption.
+    pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
+        self.figures += 1;
+        let bare = Figure { title: String::new(), caption: String::new(), ..figure.clone() };
+        let drawing = bare.drawing(ColumnWidth::Double).thinned(TOLERANCE_PT);
+        let drawing = Drawing { title: title.to_owned(), ..drawing };
+        let svg = inline_svg(&drawing, &format!("f{}-", self.figures));
+        let caption = format!("Figure {}. {title}. {caption}", self.figures);
+        self.body.push_str(&format!("<figure>\n{svg}{}</figure>\n", element("figcaption", caption.trim_end())));
+    }
+
+    /// Markup of the program itself.
+    pub(super) fn fixed(&mut self, markup: &'static str) {
+        self.body.push_str(markup);
+    }
+
+    /// The whole page under a title, which `lines` stand below.
+    pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
+        let below: String = lines.iter().map(|line| classed("p", "below", line)).collect();
+        let contents = self.contents();
+        let (head, style) = (words(title), STYLE.trim_end());
+        let body = self.body;
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\"/>\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
+             <title>{head}</title>\n<style>\n{style}\n</style>\n</head>\n<body>\n<header>\n<h1>{head}</h1>\n{below}</header>\n\
+             {contents}<main>\n{body}</main>\n</body>\n</html>\n"
+        )
+    }
+
+    fn contents(&self) -> String {
+        let entry = |Heading { number, title }: &Heading| {
+            let class = if number.contains('.') { "part" } else { "section" };
+            format!("<li class=\"{class}\"><a href=\"#s{number}\">{number} {}</a></li>\n", words(title))
+        };
+        let entries: String = self.headings.iter().map(entry).collect();
+        format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
+    }
+}
+
+/// Whether a column is one of figures, or of words so short that they stand in one line.
+fn class_of(table: &Table, column: usize) -> &'static str {
+    let is_short = table.rows.iter().all(|row| row[column].chars().count() <= SHORT);
+    match (table.has_numbers(column), is_short) {
+        (true, _) => "n",
+        (false, true) => "s",
+        (false, false) => "",
+    }
+}
+
+/// Words from wherever they come as a page takes them: nothing in them is markup, nothing in them is invisible.
+fn words(text: &str) -> String {
+    escaped(&sanitized(text))
+}
+
+/// An element with these words in it.
+fn element(tag: &str, text: &str) -> String {
+    format!("<{tag}>{}</{tag}>\n", words(text))
+}
+
+/// An element of a class with these words in it.
+fn classed(tag: &str, class: &str, text: &str) -> String {
+    format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gdcm_plot::figure::{Axis, Curve, Panel, Plot, Role};
+    use roxmltree::{Document, ParsingOptions};
+    use std::collections::BTreeSet;
+
+    fn figure() -> Figure {
+        let curve = Curve::new("a", Role::Nominal.stroke(false), [1.0, 2.0], [1.0, 2.0]).key("a");
+        let panel = Panel::new(Axis::linear("x"), Axis::linear("y")).with(curve);
+        Figure::new("").plot(Plot::new("").panel(panel.clone()).panel(panel))
+    }
+
+    fn page() -> String {
+        let mut page = Page::default();
+        page.section("First <of all>");
+        page.subsection("A part");
+        page.figure(&figure(), "One", "It has a caption.");
+        page.figure(&figure(), "Two", "");
+        page.section("Second");
+        let mut table = Table::new("Gains & delays", ["model", "J [-]"]);
+        table.row(["V+5kt", "1.5"]);
+        page.table(&table);
+        page.table(&Table::new("left out", ["nothing"]));
+        page.finish("A <title>", &["below & so on".to_owned()])
+    }
+
+    /// The document type is HTML's, which names no other file.
+    fn parsed(text: &str) -> Document<'_> {
+        Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() }).unwrap()
+    }
+
+    #[test]
+    fn sections_tables_and_figures_are_numbered_and_the_contents_lead_to_them() {
+        let text = page();
+        let document = parsed(&text);
+        let of = |tag: &'static str| document.descendants().filter(move |node| node.has_tag_name(tag));
+        let links: Vec<&str> = of("a").filter_map(|node| node.attribute("href")).collect();
+        assert_eq!(links, ["#s1", "#s1.1", "#s2"]);
+        let ids: BTreeSet<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        assert!(links.iter().all(|link| ids.contains(&link[1..])));
+        let captions: Vec<&str> = of("figcaption").filter_map(|node| node.text()).collect();
+        assert_eq!(captions, ["Figure 1. One. It has a caption.", "Figure 2. Two."]);
+        assert_eq!(of("caption").filter_map(|node| node.text()).collect::<Vec<_>>(), ["Table 1. Gains & delays"]);
+    }
+
+    #[test]
+    fn no_two_parts_of_a_page_share_a_name_and_every_name_that_is_referred_to_is_there() {
+        let text = page();
+        let document = parsed(&text);
+        let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len(), "{ids:?}");
+        let clips: Vec<&str> = document.descendants().filter_map(|node| node.attribute("clip-path")).collect();
+        assert_eq!(clips.len(), 4);
+        assert!(clips.iter().all(|clip| ids.contains(&&clip["url(#".len()..clip.len() - 1])), "{clips:?}");
+    }
+
+    #[test]
+    fn a_figure_says_what_it_shows_to_who_cannot_see_it() {
+        let text = page();
+        let document = parsed(&text);
+        let labels: Vec<_> = document.descendants().filter(|node| node.has_tag_name("svg")).collect();
+        let said = labels.iter().map(|svg| (svg.attribute("role"), svg.attribute("aria-label"))).collect::<Vec<_>>();
+        assert_eq!(said, [(Some("img"), Some("One")), (Some("img"), Some("Two"))]);
+    }
+
+    #[test]
+    fn words_from_a_file_are_no_markup_and_hide_nothing() {
+        let name = "<b onclick=\"x\">V+5kt & 'roll'\u{1b}[2J\u{202e}";
+        let text = "&lt;b onclick=&quot;x&quot;&gt;V+5kt &amp; 'roll'\\u{1b}[2J\\u{202e}";
+        assert_eq!(words(name), text);
+        assert_eq!(element("td", name), format!("<td>{text}</td>\n"));
+    }
+
+    #[test]
+    fn letters_of_every_language_stay() {
+        assert_eq!(words("Höhe Δφ → 重量"), "Höhe Δφ → 重量");
+    }
+
+    #[test]
+    fn of_many_names_the_first_are_given_and_the_others_counted() {
+        assert_eq!(names(&["a", "b"]), "a, b");
+        let many: Vec<String> = (0..1000).map(|number| number.to_string()).collect();
+        assert!(names(&many).ends_with("10, 11 and 988 more"), "{}", names(&many));
+    }
+}

@@ -1,0 +1,136 @@
+//! What a qualification asks of the models (M17): the numbers of `gdcm requirements`.
+
+use std::collections::BTreeMap;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_study::study::{
+    BandwidthFinding, Cancelled, Engine, Progress, Requirements, RequirementsOverview, Study, Table, TimeHistories,
+};
+
+use super::page::Page;
+use super::{ReportSubject, Unobtrusive};
+use gdcm_plot::figure::requirements_figure;
+
+/// Columns of a table that fit a sheet.
+const COLUMNS: usize = 9;
+
+/// Adds the section on the requirements; with the answers to flight records where there are some.
+///
+/// # Errors
+/// [`Cancelled`] soon after `progress` says so.
+pub(super) fn add_requirements(
+    page: &mut Page,
+    ReportSubject { analysis, histories, known }: ReportSubject<'_>,
+    engine: &Engine,
+    progress: &dyn Progress,
+) -> Result<(), Cancelled> {
+    let requirements = engine.requirements(analysis, known, &Unobtrusive(progress))?;
+    page.section("Requirements");
+    page.paragraph(
+        "What those ask who accept a simulator or a flight control law, of the physics representative as it is, under its own correction \
+         and under the schedule, and of the identified representative. These numbers are no qualification: the tests of the standards \
+         are flown at given conditions with given inputs, and judged by people.",
+    );
+    add_bandwidth(page, &requirements, &analysis.study);
+    add_modes(page, &requirements);
+    page.subsection("Summary costs");
+    page.paragraph(
+        "Means of J (M4) and of the share of the band, in ln \u{3c9}, inside the envelopes of unnoticeable added dynamics \
+         (MIL-STD-1797A, appendix A, 4.2.1.2), against the identified representative.",
+    );
+    page.wide_table_behind(&requirements.summary_table(histories), 3, COLUMNS - 2);
+    let limits = &analysis.study.requirements.overview;
+    let overview = requirements.overview(&analysis.study.dataset, histories, limits);
+    page.wide_table_behind(&overview.table, RequirementsOverview::HEADS, COLUMNS);
+    if let Some(histories) = histories {
+        add_histories(page, histories);
+    }
+    let missing = requirements.missing.iter().map(|of| (of.condition, format!("no {}: {}", of.what, of.why)));
+    page.list(by_words(missing.chain(requirements.cautions.iter().map(|of| (Some(of.condition), of.text.clone())))));
+    Ok(())
+}
+
+/// Bandwidth and phase delay of the responses that have one of them, and why others have none.
+fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
+    let dataset = &study.dataset;
+    page.subsection("Bandwidth and phase delay");
+    page.paragraph(
+        "Of the attitude that a stick makes (ADS-33E-PRF 3.3.2, 3.4.1; MIL-DTL-32742): the bandwidth is the lesser of the frequencies at \
+         which 45\u{b0} of phase margin and 6 dB of gain margin are left; the phase delay is the phase lost from \u{3c9}180 to \
+         2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; only the engineer's own are drawn.",
+    );
+    let is_known = |of: &&BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+    let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) = requirements.bandwidth.iter().partition(is_known);
+    if !known.is_empty() {
+        let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
+        let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
+        page.figure(&figure, &figure.title, caption);
+    }
+    let known = Requirements { bandwidth: known.into_iter().cloned().collect(), ..requirements.clone() };
+    page.table(&known.bandwidth_table(dataset));
+    let why = |of: &BandwidthFinding| of.absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
+    let reason = |of: &BandwidthFinding| (Some(of.condition), format!("{}: {}", dataset.pair_name(of.pair), why(of)));
+    page.list(by_words(unknown.into_iter().map(reason)));
+}
+
+fn add_modes(page: &mut Page, requirements: &Requirements) {
+    page.subsection("Modes");
+    page.paragraph(
+        "Modes of the identified representative, and of the physics representative in their places, against 14 CFR part 60, appendix C, \
+         table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings do, and where there are some the corrected model's \
+         stand beside them.",
+    );
+    let mut conditions: Vec<ConditionId> = requirements.modes.iter().map(|of| of.condition).collect();
+    conditions.dedup();
+    conditions.into_iter().for_each(|id| page.wide_table(&requirements.mode_table(id), COLUMNS));
+}
+
+/// Time histories within tolerances, and what is not compared.
+fn add_histories(page: &mut Page, histories: &TimeHistories) {
+    page.subsection("Time histories");
+    let source = match histories.tolerance_table.source() {
+        "" => "the engineer's table",
+        source => source,
+    };
+    page.paragraph(&format!(
+        "Share of time for which the models, at the flown sticks, stay within tolerances about flight ({source}): in windows of at most \
+         10 s, each from an estimated initial state and offsets, over all records of a condition. Attitudes are integrals of body rates \
+         from the start of each window, which holds for small angles."
+    ));
+    page.table(&tolerance_table(histories));
+    if !histories.records.is_empty() {
+        page.table(&histories.share_table());
+        histories.conditions().into_iter().for_each(|(id, _)| page.table(&histories.record_table(id)));
+    }
+    page.list(by_words(histories.missing.iter().map(|of| (of.condition, of.why.clone()))));
+}
+
+/// The tolerances asked for.
+fn tolerance_table(histories: &TimeHistories) -> Table {
+    let mut table = Table::new("Tolerances", ["quantity", "from", "absolute", "relative [%]", "entry"]);
+    for row in histories.tolerance_table.rows() {
+        let from = if row.integrated { format!("integral of {}", row.channel) } else { row.channel.clone() };
+        let absolute = format!("\u{b1}{} {}", row.absolute, row.unit);
+        let relative = row.relative.map_or_else(String::new, |share| format!("\u{b1}{}", 100.0 * share));
+        table.row([row.quantity.clone(), from, absolute, relative, row.entry.clone()]);
+    }
+    table
+}
+
+/// Words, each once behind the conditions that they are of.
+fn by_words(said: impl Iterator<Item = (Option<ConditionId>, String)>) -> Vec<String> {
+    let mut grouped: BTreeMap<String, Vec<ConditionId>> = BTreeMap::new();
+    for (condition, words) in said {
+        let conditions = grouped.entry(words).or_default();
+        conditions.extend(condition.filter(|id| !conditions.contains(id)));
+    }
+    let line = |(words, conditions): (String, Vec<ConditionId>)| {
+        let ids: Vec<String> = conditions.iter().map(ToString::to_string).collect();
+        match ids.as_slice() {
+            [] => format!("{words}."),
+            [one] => format!("Condition {one}: {words}."),
+            _ => format!("Conditions {}: {words}.", ids.join(", ")),
+        }
+    };
+    grouped.into_iter().map(line).collect()
+}

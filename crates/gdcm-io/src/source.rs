@@ -1,0 +1,269 @@
+//! A file's bytes, read within limits.
+
+use std::borrow::Cow;
+use std::fs;
+use std::fs::{File, FileType};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use flate2::bufread::{GzDecoder, MultiGzDecoder};
+use gdcm_model::dataset::limits::LARGEST_TEXT;
+use sha2::{Digest, Sha256};
+
+use crate::file_error::FileError;
+use crate::variables::ReadingBudget;
+
+/// The two bytes that every gzip file starts with (RFC 1952).
+pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
+/// What some editors put in front of UTF-8.
+const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
+
+/// How many bytes are read, unpacked or summed up before the budget is asked again.
+const CHUNK: usize = 1 << 16;
+
+/// What a file holds: the hash of its bytes, and its text.
+#[derive(Debug)]
+pub(super) struct Source<'b> {
+    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    pub(super) sha256: String,
+    text: Cow<'b, [u8]>,
+}
+
+impl Source<'static> {
+    /// Reads a file within a budget, unpacking it where it is packed.
+    pub(super) fn read(path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
+        let bytes = read_bytes(path, LARGEST_TEXT, budget)?;
+        let Source { sha256, text } = Source::of(&bytes, path, budget)?;
+        let unpacked = if let Cow::Owned(unpacked) = text { Some(unpacked) } else { None };
+        Ok(Source { sha256, text: Cow::Owned(unpacked.unwrap_or(bytes)) })
+    }
+}
+
+impl<'b> Source<'b> {
+    /// Takes bytes that are already at hand; `path` is what an error calls them.
+    pub(super) fn of(bytes: &'b [u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
+        Ok(Source { sha256: sha256(bytes, path, budget)?, text: text_of(bytes, path, budget)? })
+    }
+
+    /// The text, without a byte order mark.
+    pub(super) fn text(&self) -> &[u8] {
+        without_mark(&self.text)
+    }
+}
+
+/// A text without what some editors put in front of it.
+pub(super) fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(text)
+}
+
+/// A file to read from, and its length \[bytes\].
+///
+/// # Errors
+/// Where there is none, or something else: opening a pipe waits for somebody who writes into it, and a directory can be opened on some
+/// systems.
+fn open_file(path: &Path) -> Result<(File, u64), FileError> {
+    let failed = |error: std::io::Error| FileError::reading(path, &error);
+    let metadata = fs::metadata(path).map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(FileError::Directory { path: path.to_owned() });
+    }
+    if let Some(kind) = kind_of(metadata.file_type()) {
+        return Err(FileError::NotAFile { path: path.to_owned(), kind });
+    }
+    Ok((File::open(path).map_err(failed)?, metadata.len()))
+}
+
+/// A file's text from its beginning on, unpacked where the file is packed.
+pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
+    let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
+    let begin = file.fill_buf().map_err(|error| FileError::reading(path, &error))?;
+    if begin.starts_with(&GZIP_MAGIC) { Ok(Box::new(MultiGzDecoder::new(file))) } else { Ok(Box::new(file)) }
+}
+
+/// The bytes of a file of at most `most`.
+pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
+    let failed = |error: std::io::Error| FileError::reading(path, &error);
+    let (file, length) = open_file(path)?;
+    let mut file = file.take(most + 1);
+    let mut bytes = Vec::with_capacity(usize::try_from(length.min(most)).unwrap_or(0));
+    while file.by_ref().take(CHUNK as u64).read_to_end(&mut bytes).map_err(failed)? > 0 {
+        budget.work(CHUNK as u64, "").map_err(|fault| FileError::variables(path, fault))?;
+    }
+    check_length(bytes.len() as u64, most, path)?;
+    Ok(bytes)
+}
+
+/// What stands under a path that is neither a file nor a directory, in words.
+pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
+    if kind.is_file() || kind.is_dir() || kind.is_symlink() {
+        return None;
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        for (is, words) in [
+            (kind.is_fifo(), "a named pipe"),
+            (kind.is_socket(), "a socket"),
+            (kind.is_char_device() || kind.is_block_device(), "a device"),
+        ] {
+            if is {
+                return Some(words);
+            }
+        }
+    }
+    Some("something of the system")
+}
+
+/// The text that bytes are, or that is packed in them, with the memory for what is unpacked taken from a budget.
+pub(super) fn text_of<'b>(
+    bytes: &'b [u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<Cow<'b, [u8]>, FileError> {
+    if bytes.starts_with(&GZIP_MAGIC) {
+        return unpack(bytes, path, budget).map(Cow::Owned);
+    }
+    check_length(bytes.len() as u64, LARGEST_TEXT, path)?;
+    Ok(Cow::Borrowed(bytes))
+}
+
+/// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
+///
+/// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
+fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
+    let (mut text, mut rest) = (Vec::new(), bytes);
+    while rest.iter().any(|&byte| byte != 0) {
+        let mut member = GzDecoder::new(rest);
+        loop {
+            // A text that grows is copied into twice its memory.
+            budget.take(CHUNK as u64, 2, "").map_err(|fault| FileError::variables(path, fault))?;
+            let unpacked = member.by_ref().take(CHUNK as u64).read_to_end(&mut text);
+            check_length(text.len() as u64, LARGEST_TEXT, path)?;
+            let count = unpacked.map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
+                _ => FileError::Gzip { path: path.to_owned() },
+            })?;
+            if count == 0 {
+                break;
+            }
+        }
+        rest = member.into_inner();
+    }
+    Ok(text)
+}
+
+fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
+    if length > most {
+        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: most >> 20 });
+    }
+    Ok(())
+}
+
+/// SHA-256 of bytes, in lower-case hexadecimal.
+pub(super) fn sha256(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<String, FileError> {
+    let mut hash = Sha256::new();
+    for chunk in bytes.chunks(CHUNK) {
+        budget.work(0, "").map_err(|fault| FileError::variables(path, fault))?;
+        hash.update(chunk);
+    }
+    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+// Whether a file is still what it was.
+
+/// What changes when a file is written: cheap to look at, also on a network drive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileStamp {
+    modified: Option<SystemTime>,
+    length: u64,
+}
+
+impl FileStamp {
+    /// The stamp of a file; none while there is no such file.
+    pub fn of(path: &Path) -> Option<Self> {
+        let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+        Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
+    }
+}
+
+/// SHA-256 of a file's bytes as they are stored, in lower-case hexadecimal.
+///
+/// # Errors
+/// Where the file cannot be read.
+pub fn file_sha256(path: &Path) -> Result<String, FileError> {
+    Ok(Source::read(path, &ReadingBudget::default())?.sha256)
+}
+
+/// Whether there is such a file.
+pub fn file_exists(path: &Path) -> bool {
+    path.is_file()
+}
+
+// The home directory in a path as it is typed.
+
+/// `~` and `~/x` with the home directory in the place of `~`, as a shell reads them; any other path, and each of them where there is
+/// no home directory, as it is.
+pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
+    match (path.strip_prefix("~"), home) {
+        (Ok(rest), Some(home)) if rest.as_os_str().is_empty() => home.to_owned(),
+        (Ok(rest), Some(home)) => home.join(rest),
+        _ => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod source_tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_that_of_the_published_example() {
+        // FIPS 180-2, appendix B.1.
+        let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
+        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn members_follow_one_another_and_zeros_behind_the_last_are_passed_over() {
+        use std::io::Write;
+        let member = |text: &[u8]| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            encoder.write_all(text).unwrap();
+            encoder.finish().unwrap()
+        };
+        let packed = [member(b"{"), member(b""), member(b"}"), vec![0; 700]].concat();
+        let of = |bytes| Source::of(bytes, Path::new("x"), &ReadingBudget::default());
+        assert_eq!(of(&packed).unwrap().text(), b"{}");
+        let strange = [member(b"{}"), b"\0\0something else".to_vec()].concat();
+        assert!(matches!(of(&strange), Err(FileError::Gzip { .. })));
+        let cut = [member(b"{"), member(b"}")[..12].to_vec()].concat();
+        assert!(matches!(of(&cut), Err(FileError::GzipCutOff { .. })));
+    }
+
+    #[test]
+    fn a_byte_order_mark_is_no_part_of_the_text() {
+        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default()).unwrap();
+        assert_eq!(source.text(), b"{}");
+    }
+}
+
+#[cfg(test)]
+mod home_tests {
+    use super::*;
+
+    #[test]
+    fn a_tilde_means_home_where_a_shell_says_so() {
+        let home = Path::new("/home/ada");
+        for (typed, meant) in [
+            ("~", "/home/ada"),
+            ("~/", "/home/ada"),
+            ("~/x/data.json", "/home/ada/x/data.json"),
+            ("~bob/x", "~bob/x"),
+            ("x/~/y", "x/~/y"),
+            ("/data/x", "/data/x"),
+        ] {
+            assert_eq!(at_home(Path::new(typed), Some(home)), Path::new(meant), "{typed}");
+            assert_eq!(at_home(Path::new(typed), None), Path::new(typed));
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Responses of one model at every condition.
+
+use gdcm_io::embedded_example;
+use gdcm_model::dataset::{Band, BundleKind, ModelId};
+use gdcm_study::study::{AcrossJob, Job, Unobserved};
+
+#[test]
+fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
+    let dataset = embedded_example().unwrap().dataset;
+    let ids = [2, 0].map(|index| {
+        let condition = &dataset.conditions()[index];
+        let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
+        ModelId::new(condition.id(), BundleKind::Physics, &nominal.name)
+    });
+    let missing = ModelId::new(ids[0].condition, BundleKind::Physics, "no such model");
+    let band = Band::new(0.5, 12.0).unwrap();
+    let models = vec![ids[0].clone(), missing, ids[1].clone()];
+    let job = AcrossJob { dataset: dataset.into(), models, couplings: None, grid: (band, 5) };
+    let curves = job.run(&mut (), &Unobserved).unwrap();
+    let found: Vec<&ModelId> = curves.responses.iter().map(|(id, _)| id).collect();
+    assert_eq!(found, [&ids[0], &ids[1]]);
+    let pair = job.dataset.measuring_pairs().marked().next().unwrap();
+    assert!(curves.responses.iter().all(|(_, response)| response.curve(pair).len() == 5));
+}

@@ -1,0 +1,71 @@
+//! The whole method against reference figures, and properties of whole studies (figures: see `tests/data/README.md`).
+
+use std::sync::LazyLock;
+
+use gdcm_io::corrections;
+use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+use gdcm_study::study::{Analysis, Edit, Engine, Study, Unobserved, setting};
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
+mod across;
+mod adopted_models;
+mod assessment;
+mod bar_coverage;
+mod coherence;
+mod derivations;
+mod edges;
+mod example;
+mod known_answer;
+mod lead;
+mod mean_gain;
+mod modes;
+mod remarks;
+mod response_paths;
+mod responses;
+mod signs;
+mod studies;
+mod timing;
+mod uncertainty;
+mod variants;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(number).collect()
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap()
+}
+
+fn texts(value: &Value) -> Vec<&str> {
+    list(value).iter().map(|text| text.as_str().unwrap()).collect()
+}
+
+fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
+    engine.analyze(study, &Unobserved).unwrap()
+}
+
+/// The example as the reference figures were computed from it.
+fn study_of_example() -> Study {
+    Study::new(crate::REFERENCE_DATASET.dataset.clone())
+}
+
+/// The example analysed, its suggested outliers rejected, and analysed again.
+static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| {
+    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let first = analyze(&mut engine, &study);
+    for (&condition, result) in &first.conditions {
+        let models = result.as_ref().unwrap().suggested();
+        study.apply(&Edit::reject_physics(condition, &models)).unwrap();
+    }
+    analyze(&mut engine, &study)
+});

@@ -1,0 +1,187 @@
+//! Dataset files: what is read, what is refused and in what words, and that nothing else can happen.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use gdcm_io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes};
+use serde_json::{Value, json};
+
+mod properties;
+mod records;
+mod studies;
+mod wrong_content;
+mod wrong_text;
+
+const SMALL: &str = include_str!("../../../../../tests/data/small-dataset.json");
+
+/// The small dataset, changed.
+fn small(change: impl FnOnce(&mut Value)) -> Vec<u8> {
+    let mut value: Value = serde_json::from_str(SMALL).unwrap();
+    change(&mut value);
+    serde_json::to_vec(&value).unwrap()
+}
+
+fn load(bytes: &[u8]) -> Result<gdcm_io::LoadedDataset, FileError> {
+    load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from("test.json")))
+}
+
+/// The message that refuses these bytes; asserts that it is one line, and names the file.
+fn refusal(bytes: &[u8]) -> String {
+    let message = load(bytes).expect_err("the file is wrong and has to be refused").to_string();
+    assert!(message.starts_with("test.json: ") && !message.contains('\n'), "{message}");
+    message
+}
+
+/// Asserts that the small dataset, changed, is refused with every one of these words.
+fn assert_refused(change: impl FnOnce(&mut Value), words: &[&str]) {
+    let message = refusal(&small(change));
+    for word in words {
+        assert!(message.contains(word), "expected \"{word}\" in: {message}");
+    }
+}
+
+/// The same of the small dataset's text, with the first `from` replaced.
+fn assert_text_refused(from: &str, to: &str, words: &[&str]) {
+    assert!(SMALL.contains(from), "{from}");
+    let message = refusal(SMALL.replacen(from, to, 1).as_bytes());
+    for word in words {
+        assert!(message.contains(word), "expected \"{word}\" in: {message}");
+    }
+}
+
+fn gzip(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+#[test]
+fn the_small_dataset_is_read_as_it_is_written() {
+    let loaded = load(SMALL.as_bytes()).unwrap();
+    let dataset = &loaded.dataset;
+    assert_eq!((dataset.inputs().len(), dataset.outputs().len(), dataset.conditions().len()), (2, 2, 2));
+    let orders: Vec<Option<usize>> = dataset
+        .conditions()
+        .iter()
+        .flat_map(|condition| condition.bundle(gdcm_model::dataset::BundleKind::Identified))
+        .map(gdcm_model::dataset::Model::order)
+        .collect();
+    assert_eq!(orders, [Some(2), None, Some(2), Some(0)]);
+    let gdcm_model::dataset::Dynamics::StateSpace(model) =
+        &dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[0].dynamics
+    else {
+        panic!("matrices are given")
+    };
+    assert_eq!((model.a()[(0, 1)], model.a()[(1, 0)]), (1.0, -2.0), "A[row][column]");
+    assert_eq!(loaded.cautions, Vec::<String>::new());
+}
+
+#[test]
+fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
+    let bytes = small(|file| {
+        let model = &mut file["conditions"][0]["physics_models"][1];
+        model["sample_time_s"] = json!(0.01);
+        model["output_delays_s"] = json!([0, 0.02]);
+        let response = &mut file["conditions"][0]["identified_models"][1]["frequency_response"];
+        response["averages"] = json!(12);
+        response["window_s"] = json!(20.0);
+        response["valid_band_rad_s"] = json!([[[0.5, 9], [0.5, 9]], [[0.5, 9], [1, 9]]]);
+    });
+    let loaded = load(&bytes).unwrap();
+    assert_eq!(loaded.cautions, Vec::<String>::new());
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("again.json");
+    gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    for written in
+        ["\"sample_time_s\":0.01", "\"output_delays_s\":[0.0,0.02]", "\"averages\":12.0", "\"window_s\":20.0"]
+    {
+        assert!(text.contains(written), "{written}");
+    }
+    assert_eq!(load_dataset(&path).unwrap().dataset, loaded.dataset);
+}
+
+#[test]
+fn a_packed_file_is_known_by_its_bytes_and_not_by_its_name() {
+    let plain = load(SMALL.as_bytes()).unwrap();
+    let packed = load(&gzip(SMALL.as_bytes())).unwrap();
+    assert_eq!(plain.dataset, packed.dataset);
+    assert_ne!(plain.sha256, packed.sha256, "the hash is that of the bytes as stored");
+}
+
+#[test]
+fn the_embedded_example_has_eleven_conditions_and_no_cautions() {
+    let example = embedded_example().unwrap();
+    assert_eq!((example.dataset.conditions().len(), example.cautions.len()), (11, 0));
+    assert_eq!(example.origin, DatasetOrigin::EmbeddedExample);
+}
+
+#[test]
+fn a_byte_order_mark_is_passed_over() {
+    assert!(load(&[b"\xef\xbb\xbf", SMALL.as_bytes()].concat()).is_ok());
+}
+
+#[test]
+fn a_model_of_order_zero_may_leave_its_rows_out() {
+    for c in [json!([]), json!([[], []])] {
+        let bytes = small(|file| file["conditions"][1]["identified_models"][1]["C"] = c.clone());
+        assert!(load(&bytes).is_ok(), "{c}");
+    }
+}
+
+#[test]
+fn keys_that_are_not_known_are_named_with_their_places_once() {
+    let bytes = small(|file| {
+        file["author"] = json!("someone");
+        for model in file["conditions"][0]["physics_models"].as_array_mut().unwrap() {
+            model["wind"] = json!({"deep": [1, 2]});
+        }
+    });
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!(
+        cautions,
+        [
+            "the key \"author\" is not known and not used",
+            "condition 7 (number 1 in the file), physics model \"nominal\" (number 1): the key \"wind\" is not known and not \
+             used, and 1 more like it",
+        ]
+    );
+}
+
+#[test]
+fn an_order_that_the_matrices_do_not_have_is_a_caution() {
+    let bytes = small(|file| file["conditions"][1]["identified_models"][0]["order"] = json!(12));
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!(
+        cautions,
+        [
+            "condition 10 (number 2 in the file), identified model \"sweeps\" (number 1): order says 12, the matrices have 2 states"
+        ]
+    );
+}
+
+#[test]
+fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the_rest() {
+    let bytes = small(|file| {
+        for index in 0..1000 {
+            file[format!("key {index}")] = json!(index);
+        }
+    });
+    let cautions = load(&bytes).unwrap().cautions;
+    assert_eq!((cautions.len(), cautions[50].as_str()), (51, "950 other keys are not known and not used"));
+}
+
+#[test]
+fn names_of_states_are_kept_where_there_is_one_for_each() {
+    let names = |loaded: &gdcm_io::LoadedDataset, model: usize| {
+        loaded.dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[model].states.to_vec()
+    };
+    let loaded = load(&small(|_| {})).unwrap();
+    assert_eq!((names(&loaded, 0), loaded.cautions.len()), (vec!["w".to_owned(), "q".to_owned()], 0));
+    let wrong = load(&small(|value| value["conditions"][0]["physics_models"][1]["states"] = json!(["w"]))).unwrap();
+    assert_eq!((names(&wrong, 0).len(), names(&wrong, 1).len()), (2, 0));
+    let [caution] = wrong.cautions.as_slice() else { panic!("{:?}", wrong.cautions) };
+    assert!(caution.contains("1 names for 2 states: they are left out"), "{caution}");
+}

@@ -1,0 +1,389 @@
+//! Study files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use gdcm_io::{
+    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
+};
+use gdcm_method::correction::Channel;
+use gdcm_method::schedule::DelayScheduling;
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_study::study::{Edit, Kind, SETTINGS, Setting, SignRole, Study, Value, setting};
+use proptest::prelude::*;
+use serde_json::{Value as Json, json};
+
+use super::SMALL;
+
+/// A directory with the small dataset in `data/`, and the way to a study beside that.
+struct Desk {
+    directory: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let directory = tempfile::tempdir().unwrap();
+        fs::create_dir(directory.path().join("data")).unwrap();
+        fs::create_dir(directory.path().join("studies")).unwrap();
+        fs::write(directory.path().join("data/small.json"), SMALL).unwrap();
+        Self { directory }
+    }
+
+    fn dataset(&self) -> PathBuf {
+        self.directory.path().join("data/small.json")
+    }
+
+    fn study(&self) -> PathBuf {
+        self.directory.path().join("studies/a.gdcm-study.json")
+    }
+
+    fn loaded(&self) -> LoadedDataset {
+        load_dataset(&self.dataset()).unwrap()
+    }
+
+    /// Saves a study without decisions and changes its text.
+    fn saved(&self, change: impl FnOnce(&mut Json)) {
+        let loaded = self.loaded();
+        save_study(&Study::new(loaded.dataset.clone()), &loaded, &self.study()).unwrap();
+        let mut value: Json = serde_json::from_slice(&fs::read(self.study()).unwrap()).unwrap();
+        change(&mut value);
+        fs::write(self.study(), serde_json::to_vec(&value).unwrap()).unwrap();
+    }
+
+    fn refusal(&self, change: impl FnOnce(&mut Json)) -> String {
+        self.saved(change);
+        open_study(&self.study()).unwrap_err().to_string()
+    }
+}
+
+fn decided(study: &mut Study, edits: &[Edit]) {
+    for edit in edits {
+        study.apply(edit).unwrap();
+    }
+}
+
+/// Any value that a setting may have, of two numbers from 0 to 1.
+fn value_of(setting: &Setting, [first, second]: [f64; 2]) -> Value {
+    let within = |[least, most]: [f64; 2], at: f64| least + at * (most - least);
+    match setting.kind {
+        Kind::Optional { .. } | Kind::Range { nothing: Some(_), .. } if second > 0.7 => Value::Nothing,
+        Kind::Number { range, whole: true, .. } => Value::Number(within(range, first).round()),
+        Kind::Number { range, .. } | Kind::Optional { range, .. } => Value::Number(within(range, first)),
+        Kind::Range { range, .. } => {
+            let lower = within(range, 0.9 * first);
+            Value::Range([lower, within([lower, range[1]], 0.1 + 0.9 * second)])
+        }
+        Kind::Flag { .. } => Value::Flag(first > 0.5),
+        Kind::Choice { words, .. } => Value::Choice((first * (words.len() as f64 - 0.01)) as usize),
+    }
+}
+
+fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    let pair = || (0_usize..2, 0_usize..2).prop_map(|(output, input)| Pair::new(output, input));
+    let edit = prop_oneof![
+        (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Hold(pair, on)),
+        (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Fit(pair, on)),
+        (prop::sample::select(SETTINGS.to_vec()), [0.0..1.0_f64, 0.0..1.0_f64])
+            .prop_map(|(setting, at)| setting.to(value_of(setting, at))),
+    ];
+    prop::collection::vec(edit, 0..30)
+}
+
+#[test]
+fn every_setting_is_a_key_of_the_file() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    let mut study = Study::new(loaded.dataset.clone());
+    for setting in SETTINGS {
+        study.apply(&setting.to(value_of(setting, [0.6, 0.6]))).unwrap();
+    }
+    save_study(&study, &loaded, &desk.study()).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    for setting in SETTINGS {
+        let pointer = format!("/settings/{}", setting.key.replace('.', "/"));
+        assert!(text.pointer(&pointer).is_some(), "{}", setting.key);
+    }
+}
+
+/// How delays are scheduled in the study that a changed text is.
+fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
+    let desk = Desk::new();
+    desk.saved(change);
+    open_study(&desk.study()).unwrap().study.settings.schedule_delays
+}
+
+#[test]
+fn flags_of_older_studies_say_whether_delays_are_scheduled() {
+    let older = |flag: bool| {
+        delay_scheduling(|file| {
+            file["settings"].as_object_mut().unwrap().remove("schedule_delays");
+            file["settings"]["schedule"]["delays"] = json!(flag);
+        })
+    };
+    assert_eq!([older(true), older(false)], [DelayScheduling::Always, DelayScheduling::Never]);
+    let said = |value: Json| delay_scheduling(|file| file["settings"]["schedule_delays"] = value);
+    let values = [json!("automatic"), json!("always"), json!("never"), json!(true), json!(false)];
+    assert_eq!(
+        values.map(said),
+        [
+            DelayScheduling::Automatic,
+            DelayScheduling::Always,
+            DelayScheduling::Never,
+            DelayScheduling::Always,
+            DelayScheduling::Never
+        ]
+    );
+    let refusal = Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
+    assert!(refusal.contains("\"automatic\"") && refusal.contains("sometimes"), "{refusal}");
+}
+
+#[test]
+fn older_programs_find_a_flag_where_they_look_for_it() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    for (scheduling, flag) in [("automatic", false), ("always", true), ("never", false)] {
+        let mut study = Study::new(loaded.dataset.clone());
+        let value = setting::SCHEDULE_DELAYS.read(&[scheduling]).unwrap();
+        study.apply(&setting::SCHEDULE_DELAYS.to(value)).unwrap();
+        save_study(&study, &loaded, &desk.study()).unwrap();
+        let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+        let settings = &text["settings"];
+        assert_eq!((&settings["schedule_delays"], &settings["schedule"]["delays"]), (&json!(scheduling), &json!(flag)));
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_study_saved_and_opened_is_the_same_to_the_last_digit(
+        edits in edits(), others in edits(), rejected in 0_usize..2, [scheduled, held_out] in any::<[bool; 2]>(),
+        reason in "[ -~α→\n]{0,40}",
+    ) {
+        let desk = Desk::new();
+        let loaded = desk.loaded();
+        let mut study = Study::new(loaded.dataset.clone());
+        decided(&mut study, &edits);
+        let first = loaded.dataset.conditions()[0].clone();
+        let id = |bundle, model: usize| ModelId::new(first.id(), bundle, &first.bundle(bundle)[model].name);
+        decided(&mut study, &[
+            Edit::RejectBecause { model: id(BundleKind::Physics, rejected), reason },
+            Edit::Pin(id(BundleKind::Identified, rejected)),
+            Edit::SetScheduled { condition: loaded.dataset.conditions()[1].id(), scheduled },
+            Edit::SetHeldOut { condition: first.id(), held_out },
+            Edit::SetSign { channel: Channel::Output(1), of: Some(SignRole::Identified) },
+            Edit::KeepVariant { name: "first → α".to_owned() },
+        ]);
+        decided(&mut study, &others);
+        decided(&mut study, &[Edit::Restore(id(BundleKind::Physics, rejected)), Edit::KeepVariant { name: "second".to_owned() }]);
+        save_study(&study, &loaded, &desk.study()).unwrap();
+        let opened = open_study(&desk.study()).unwrap();
+        prop_assert_eq!(opened.study, study);
+        prop_assert_eq!(opened.loaded.sha256, loaded.sha256);
+        prop_assert_eq!(opened.differences, []);
+    }
+}
+
+#[test]
+fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_nor_coherence() {
+    let desk = Desk::new();
+    desk.saved(|text| {
+        assert!(text.get("variants").is_none() && text["conditions"][0]["physics"].get("reasons").is_none());
+        let settings = text["settings"].as_object_mut().unwrap();
+        ["agreement_db", "coherence_threshold"].iter().for_each(|key| drop(settings.remove(*key).unwrap()));
+    });
+    let opened = open_study(&desk.study()).unwrap();
+    let mut expected = Study::new(opened.loaded.dataset.clone());
+    assert_eq!(expected.settings.coherence_threshold, Some(0.6), "one response is measured with coherence");
+    decided(&mut expected, &[setting::COHERENCE.to(None::<f64>)]);
+    assert_eq!(opened.study, expected, "an older program took no notice of coherence");
+    assert_eq!(opened.study.settings.agreement_db, 0.05);
+}
+
+#[test]
+fn a_wrong_variant_is_refused_with_its_name() {
+    let desk = Desk::new();
+    let message = desk.refusal(|text| {
+        let (settings, conditions) = (text["settings"].clone(), text["conditions"].clone());
+        text["variants"] = json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
+        text["variants"][0]["settings"]["alpha_gain"] = json!(-1);
+    });
+    assert!(message.contains("variant \"soft\", settings, alpha_gain") && message.contains("found -1"), "{message}");
+}
+
+#[test]
+fn a_study_names_its_dataset_relative_to_itself_and_moves_with_it() {
+    let desk = Desk::new();
+    desk.saved(|_| {});
+    let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
+    assert_eq!(text["dataset"]["path"], json!("../data/small.json"));
+    let moved = tempfile::tempdir().unwrap();
+    let root = moved.path().join("elsewhere");
+    fs::rename(desk.directory.path(), &root).unwrap();
+    assert!(open_study(&root.join("studies/a.gdcm-study.json")).is_ok());
+}
+
+#[test]
+fn a_study_of_the_embedded_example_has_no_path() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("example.gdcm-study.json");
+    let loaded = embedded_example().unwrap();
+    let mut study = Study::new(loaded.dataset.clone());
+    decided(&mut study, &[setting::ALPHA_GAIN.to(0.1 + 0.2)]);
+    save_study(&study, &loaded, &path).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!((&text["dataset"]["path"], &text["dataset"]["name"]), (&Json::Null, &json!("embedded example")));
+    let Opened::Study(opened) = load_any(&path, &Default::default()).unwrap() else { panic!("a study was saved") };
+    assert_eq!(opened.study, study);
+}
+
+#[test]
+fn a_study_whose_dataset_is_gone_says_which() {
+    let desk = Desk::new();
+    desk.saved(|_| {});
+    fs::remove_file(desk.dataset()).unwrap();
+    let message = open_study(&desk.study()).unwrap_err().to_string();
+    assert!(message.contains("a.gdcm-study.json: the study's dataset cannot be opened: "), "{message}");
+    assert!(
+        message.contains("small.json: there is no such file") && message.contains("with --dataset and its path"),
+        "{message}"
+    );
+}
+
+/// What opening the study says is different, a line each.
+fn differences(desk: &Desk) -> Vec<String> {
+    open_study(&desk.study()).unwrap().differences.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    let mut study = Study::new(loaded.dataset.clone());
+    let model = |id, kind, name: &str| ModelId::new(ConditionId(id), kind, name);
+    decided(
+        &mut study,
+        &[
+            setting::ALPHA_GAIN.to(0.5),
+            Edit::Reject(model(7, BundleKind::Physics, "V+5kt")),
+            Edit::Pin(model(7, BundleKind::Identified, "measured")),
+        ],
+    );
+    save_study(&study, &loaded, &desk.study()).unwrap();
+    let mut value: Json = serde_json::from_str(SMALL).unwrap();
+    let first = &mut value["conditions"][0];
+    first["airspeed_kt"] = json!(61);
+    let models = first["physics_models"].as_array_mut().unwrap();
+    models[0]["A"][0][0] = json!(-0.25);
+    models[1]["name"] = json!("V+6kt");
+    fs::write(desk.dataset(), serde_json::to_vec(&value).unwrap()).unwrap();
+
+    let found = differences(&desk);
+    for words in [
+        "condition 7 is flown at 61 kt",
+        "condition 7, physics model \"nominal\" has changed",
+        "condition 7, physics model \"V+5kt\" was removed",
+        "condition 7, physics model \"V+6kt\" was added",
+        "a decision no longer applies: reject V+5kt (condition 7): condition 7 has no physics model \"V+5kt\"",
+    ] {
+        assert!(found.iter().any(|line| line.contains(words)), "expected \"{words}\" in {found:?}");
+    }
+    assert_eq!(found.len(), 5, "{found:?}");
+    let opened = open_study(&desk.study()).unwrap().study;
+    assert_eq!(opened.settings.alpha_gain, 0.5, "what still applies is kept");
+    let pinned = &opened.choice(ConditionId(7)).identified.pinned;
+    assert_eq!(pinned.as_deref(), Some("measured"));
+}
+
+#[test]
+fn a_dataset_written_in_another_way_is_not_different() {
+    let desk = Desk::new();
+    desk.saved(|_| {});
+    let value: Json = serde_json::from_str(SMALL).unwrap();
+    fs::write(desk.dataset(), serde_json::to_string_pretty(&value).unwrap()).unwrap();
+    assert_eq!(differences(&desk), [""; 0]);
+}
+
+#[test]
+fn a_study_that_does_not_say_what_its_dataset_held_says_that_it_has_changed() {
+    let desk = Desk::new();
+    desk.saved(|file| drop(file["dataset"].as_object_mut().unwrap().remove("holds")));
+    assert_eq!(differences(&desk), [""; 0], "the same file");
+    fs::write(desk.dataset(), SMALL.replace("6600", "6601")).unwrap();
+    let found = differences(&desk);
+    assert!(found.len() == 1 && found[0].contains(&desk.loaded().sha256), "{found:?}");
+}
+
+#[test]
+fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be() {
+    let desk = Desk::new();
+    desk.saved(|_| {});
+    let elsewhere = desk.directory.path().join("elsewhere.json");
+    fs::rename(desk.dataset(), &elsewhere).unwrap();
+    assert!(matches!(open_study(&desk.study()), Err(FileError::StudyDataset { .. })));
+    assert_eq!(open_study_of(&desk.study(), &elsewhere, &Default::default()).unwrap().differences, []);
+    fs::rename(&elsewhere, desk.study().with_file_name("small.json")).unwrap();
+    assert_eq!(open_study(&desk.study()).unwrap().differences, []);
+}
+
+#[test]
+fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
+    let desk = Desk::new();
+    type Change = fn(&mut Json);
+    let cases: [(Change, &str); 8] = [
+        (|file| file["version"] = json!(9), "expected version 1 of gdcm-study, found 9"),
+        (
+            |file| file["settings"]["alpha_gain"] = json!(-1),
+            "settings, alpha_gain: α of the gains: expected a number from 0",
+        ),
+        (|file| file["settings"]["points"] = json!(1), "settings, points"),
+        (
+            |file| file["settings"]["band_rad_s"] = json!([2, 1]),
+            "settings, band_rad_s: the frequency band must be 0.0001 <= min < max",
+        ),
+        (|file| file["settings"]["gain_bounds"] = json!([2, 1]), "settings, gain_bounds: gain bounds"),
+        (
+            |file| file["settings"]["schedule"]["degree"] = json!(4),
+            "settings, schedule: degree: expected a whole number from 0 to 3",
+        ),
+        (|file| file["settings"]["cost_average"] = json!("mode"), "settings, cost_average"),
+        (|file| file["conditions"][1]["id"] = json!(7), "condition 7 (number 2 in the file): condition 7 stands twice"),
+    ];
+    for (change, words) in cases {
+        let message = desk.refusal(change);
+        assert!(
+            message.contains("a.gdcm-study.json: ") && message.contains(words),
+            "expected \"{words}\" in: {message}"
+        );
+        assert_eq!(message.lines().count(), 1);
+    }
+}
+
+#[test]
+fn a_study_beside_its_dataset_names_it_plainly() {
+    let desk = Desk::new();
+    let loaded = desk.loaded();
+    let beside = desk.dataset().with_file_name("b.gdcm-study.json");
+    save_study(&Study::new(loaded.dataset.clone()), &loaded, &beside).unwrap();
+    let text: Json = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
+    assert_eq!(text["dataset"]["path"], json!("small.json"));
+    assert!(matches!(load_any(Path::new(&beside), &Default::default()).unwrap(), Opened::Study(_)));
+}
+
+#[test]
+fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_corrections() {
+    let mut value: Json = serde_json::from_str(SMALL).unwrap();
+    let source = json!({"file": "models/roll+5.mat", "sha256": "ab12", "variable": "sys", "made": "2026-03-01", "note": "trim 3"});
+    value["conditions"][0]["physics_models"][1]["source"] = source.clone();
+    let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("again.json");
+    gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
+    let again: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
+    assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
+    let study = Study::new(load_dataset(&path).unwrap().dataset);
+    let analysis = gdcm_study::study::Engine::default().analyze(&study, &gdcm_study::study::Unobserved).unwrap();
+    let written = gdcm_io::corrections(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let sources = written["conditions"][0]["sources"].as_array().unwrap();
+    assert_eq!((&sources[0]["bundle"], &sources[0]["file"]), (&"physics".into(), &"models/roll+5.mat".into()));
+    assert_eq!(sources.len(), 1);
+}

@@ -1,0 +1,104 @@
+//! The numbers of figures, compared with the analysis to the last digit.
+
+use gdcm_model::dataset::BundleKind;
+use gdcm_plot::figure::Role;
+
+use super::*;
+
+/// A row of the CSV file of a figure.
+#[derive(serde::Deserialize)]
+struct CsvRow {
+    figure: String,
+    panel: String,
+    curve: String,
+    label: String,
+    x_quantity: String,
+    x: String,
+    y_quantity: String,
+    y: Option<f64>,
+}
+
+/// The rows, all of one length, under the columns of the row's fields.
+fn csv_rows(figure: &Figure) -> Vec<CsvRow> {
+    let bytes = bytes(figure, ColumnWidth::Double, FigureFormat::Csv);
+    let mut reader = csv::Reader::from_reader(&bytes[..]);
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn net_gains_are_those_of_the_analysis() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("Q", "LON");
+    let rows = csv_rows(&example.figure(FigureKind::NetGain, vec![pair]));
+    let quantities = [rows[0].x_quantity.as_str(), rows[0].y_quantity.as_str()];
+    assert_eq!(quantities, ["Airspeed [kt]", "Net gain [-]"]);
+    let mut compared = 0;
+    // Other labels are those of brackets.
+    for (row, id) in rows.iter().filter_map(|row| Some((row, ConditionId(row.label.parse().ok()?)))) {
+        let expected = example.analysis.condition(id).unwrap().correction.net_gain(pair);
+        assert_eq!(row.y, Some(expected));
+        compared += 1;
+    }
+    assert_eq!(compared, 11);
+    let schedule = example.analysis.schedule.as_ref().unwrap();
+    for row in rows.iter().filter(|row| row.curve == "schedule") {
+        let airspeed_kt: f64 = row.x.parse().unwrap();
+        assert_eq!(row.y, Some(schedule.at(airspeed_kt).net_gain(pair)));
+    }
+}
+
+#[test]
+fn changes_of_cost_are_those_of_the_analysis() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("R", "PED");
+    let rows = csv_rows(&example.figure(FigureKind::Assessment, vec![pair]));
+    assert_eq!(rows.len(), 3 * 10, "three parts of every condition but the one left out");
+    for row in &rows {
+        assert_eq!(row.x_quantity, "Condition");
+        let Ok(changes) = &example.analysis.assessment[&ConditionId(row.x.parse().unwrap())] else {
+            panic!("condition {} was assessed", row.x);
+        };
+        let change = changes[pair].unwrap();
+        let expected = match row.curve.as_str() {
+            "ΔJ" => change.total(),
+            "ΔJ magnitude" => change.magnitude(),
+            "ΔJ phase" => change.phase(),
+            other => panic!("{other}"),
+        };
+        assert_eq!(row.y, Some(expected));
+    }
+}
+
+#[test]
+fn responses_are_those_of_the_models() {
+    let example = &*EXAMPLE;
+    let pair = example.pair("Q", "LON");
+    let tables = example.figure(FigureKind::Bode, vec![pair]).tables();
+    assert_eq!((tables[0].title.as_str(), tables[1].title.as_str()), ("Magnitude [dB]", "Phase [deg]"));
+    let models = &example.curves.condition.bundle(BundleKind::Physics);
+    for (index, model) in models.iter().enumerate() {
+        let heading = format!("{} [dB]", model.name);
+        let column = tables[0].columns.iter().position(|column| *column == heading).unwrap();
+        let response = example.curves.physics[index].curve(pair);
+        for (row, value) in tables[0].rows.iter().zip(response) {
+            assert_eq!(row[column].parse::<f64>().unwrap(), 20.0 * value.norm().log10());
+        }
+    }
+    // Every model of both bundles, corrected and scheduled, beside the frequency.
+    let both = models.len() + example.curves.identified.len();
+    assert_eq!(tables[0].columns.len(), 1 + both + 2);
+    assert!(tables[0].columns.iter().any(|column| column.ends_with(&format!("{} [dB]", Role::Corrected.name()))));
+}
+
+#[test]
+fn several_panels_are_one_table_with_their_names_in_each_row() {
+    let example = &*EXAMPLE;
+    let figure = example.figure(FigureKind::Assessment, example.on_axis());
+    let rows = csv_rows(&figure);
+    let panels: std::collections::BTreeSet<&str> = rows.iter().map(|row| row.panel.as_str()).collect();
+    assert_eq!((rows.len(), panels.len()), (5 * 3 * 10, 5), "{panels:?}");
+    assert!(panels.contains("LAT → P, ΔJ [-]"), "{panels:?}");
+    assert!(rows.iter().all(|row| row.figure == figure.title && row.y_quantity == "ΔJ [-]"));
+    // For people the panels stand in tables of their own.
+    assert_eq!(figure.tables().len(), 5);
+}

@@ -1,0 +1,458 @@
+//! Files that are damaged, put together at random or made to harm, for every reader: each ends with an answer, in time, within its
+//! budget, and lets no number through that is not finite.
+//!
+//! A short run is a test. For a long one (docs/testing.md):
+//!
+//! ```text
+//! GDCM_FUZZ_EXECUTIONS=1000000 GDCM_FUZZ_SEED=7 cargo test -p gdcm-io --test suite fuzz::long -- --ignored --nocapture
+//! ```
+//!
+//! An execution is known by its seed and its number: the same file is made of them on every machine. A file that fails is kept in the
+//! folder of temporary files; `GDCM_FUZZ_FILE=path` tries that one alone.
+
+mod hdf5;
+mod logs;
+mod matlab;
+#[path = "../../../src/formats/mat/sample_tests.rs"]
+#[expect(dead_code, reason = "the readers' own tests use the rest")]
+mod matlab_files;
+mod octave;
+mod texts;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
+use std::time::{Duration, Instant};
+
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{
+    DatasetOrigin, Existing, OutputSet, add_rules, add_tolerances, load_dataset, load_dataset_bytes, load_rules,
+    load_tolerances, lost_studies, models_of_bytes, open_study_of, read_levels, records_of_bytes, save_study,
+};
+use gdcm_method::correction::Channel;
+use gdcm_method::requirements::ToleranceTable;
+use gdcm_model::assembly::{FoundModel, RowRule, Rules};
+use gdcm_model::dataset::{BundleKind, ModelId};
+use gdcm_study::study::{Edit, SignRole, Study};
+
+use crate::made_up::tries;
+
+/// Memory that what a file holds may take here \[bytes\].
+const MOST_MEMORY: u64 = 16 << 20;
+/// Steps of work that a file may take here.
+const MOST_WORK: u64 = 20_000_000;
+/// What reading may take at most beside its budget and a copy of what is found: tables of the libraries that unpack \[bytes\].
+const BESIDE: u64 = 4 << 20;
+/// What one execution may take: the longest takes 2 s, on a machine with much else to do thirteen times as long.
+const LONGEST: Duration = Duration::from_secs(60);
+/// Most failures that are told.
+const MOST_FAILURES: usize = 20;
+
+/// Numbers that are hard on readers of sizes.
+const HARD: [u32; 8] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0xffff_fff8, 0x0010_0000, 0xdd00_0000];
+/// Numbers that are hard on mathematics.
+const EXTREME: [f64; 12] =
+    [0.0, -0.0, 1.0, -1.0, 1e-3, 5e-324, 1e200, -1e308, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+/// A generator of random numbers that is the same on every machine (SplitMix64, Steele et al. 2014).
+#[derive(Clone)]
+struct Dice(u64);
+
+impl Dice {
+    /// That of one execution.
+    fn of(seed: u64, execution: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ execution.wrapping_mul(0xd6e8_feb8_6659_fd93))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ (mixed >> 31)
+    }
+
+    fn below(&mut self, bound: usize) -> usize {
+        (self.next() >> 33) as usize % bound.max(1)
+    }
+
+    /// True once in so many times.
+    fn once_in(&mut self, times: usize) -> bool {
+        self.below(times) == 0
+    }
+
+    fn of_list<'l, T>(&mut self, list: &'l [T]) -> &'l T {
+        &list[self.below(list.len())]
+    }
+
+    /// A number: most are small, some are hard.
+    fn number(&mut self) -> f64 {
+        match self.below(8) {
+            0 => *self.of_list(&EXTREME),
+            1 => self.below(1000) as f64,
+            _ => (self.below(2001) as f64 - 1000.0) / 250.0,
+        }
+    }
+
+    /// The length of a side: most are small, some are hard.
+    fn side(&mut self) -> usize {
+        match self.below(24) {
+            0 => *self.of_list(&HARD) as usize,
+            1 => self.below(70_000),
+            _ => self.below(5),
+        }
+    }
+}
+
+/// Names that readers know, and some that they do not.
+const NAMES: [&str; 48] = [
+    "A",
+    "B",
+    "C",
+    "D",
+    "E",
+    "K",
+    "Ts",
+    "A_nom",
+    "B_nom",
+    "C_nom",
+    "A1",
+    "B1",
+    "C1",
+    "D1",
+    "num",
+    "den",
+    "z",
+    "p",
+    "k",
+    "InputName",
+    "OutputName",
+    "StateName",
+    "InputDelay",
+    "OutputDelay",
+    "IODelay",
+    "InternalDelay",
+    "ResponseData",
+    "Frequency",
+    "FrequencyUnit",
+    "H",
+    "w",
+    "coherence",
+    "Data_",
+    "Name_",
+    "lti",
+    "InputData",
+    "OutputData",
+    "Time",
+    "t",
+    "u",
+    "y",
+    "time",
+    "models",
+    "frequency_response",
+    "condition",
+    "airspeed_kt",
+    "x",
+    "",
+];
+/// Classes of MATLAB and GNU Octave.
+const CLASSES: [&str; 16] = [
+    "ss",
+    "tf",
+    "zpk",
+    "frd",
+    "idss",
+    "idtf",
+    "idfrd",
+    "iddata",
+    "string",
+    "timetable",
+    "table",
+    "timeseries",
+    "ltipack.ssdata",
+    "containers.Map",
+    "datetime",
+    "any",
+];
+
+/// What a study and rules are called.
+const STUDY: &str = "small.gdcm-study.json";
+const RULES: &str = "small.gdcm-rules.json";
+/// What a table of tolerances and boundaries of levels are called.
+const TOLERANCES: &str = "small-tolerances.json";
+const LEVELS: &str = "small-levels.json";
+
+/// A file: its name, and its bytes.
+type NamedBytes = (String, Vec<u8>);
+
+/// Files of the tests' data in these folders.
+static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
+    let root = crate::program_folder().join("tests/data");
+    let folders = [
+        "mat",
+        "mat73",
+        "npy",
+        "records",
+        "logs",
+        "edges",
+        "hostile",
+        "foreign/octave",
+        "foreign/numpy",
+        "foreign/text",
+        "",
+    ];
+    let mut paths: Vec<PathBuf> = folders
+        .iter()
+        .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file() && path.metadata().is_ok_and(|metadata| metadata.len() < 200_000))
+        .collect();
+    paths.sort();
+    let files = paths.iter().map(|path| {
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        (name, std::fs::read(path).unwrap())
+    });
+    files.chain(own_files()).collect()
+});
+
+/// The dataset of the study among the files.
+fn small_dataset() -> PathBuf {
+    crate::program_folder().join("tests/data/small-dataset.json")
+}
+
+/// A study with a representative, a sign and a variant, rules that say something of a model, a table of tolerances, and levels.
+fn own_files() -> [NamedBytes; 4] {
+    let folder = tempfile::tempdir().unwrap();
+    let [study_path, rules_path, tolerances_path] = [STUDY, RULES, TOLERANCES].map(|name| folder.path().join(name));
+    let loaded = load_dataset(&small_dataset()).unwrap();
+    let mut study = Study::new(Arc::clone(&loaded.dataset));
+    let condition = study.dataset.conditions()[0].id();
+    let model = study.dataset.conditions()[0].bundle(BundleKind::Physics).iter().next().unwrap().name.clone();
+    let sign = Edit::SetSign { channel: Channel::Output(0), of: Some(SignRole::Identified) };
+    let pin = Edit::Pin(ModelId::new(condition, BundleKind::Physics, model));
+    for edit in [pin, sign, Edit::KeepVariant { name: "other".to_owned() }] {
+        study.apply(&edit).unwrap();
+    }
+    save_study(&study, &loaded, &study_path).unwrap();
+    let row = RowRule { condition: Some(3), signs: Some([("NZ".to_owned(), -1.0)].into()), ..RowRule::default() };
+    let rules = Rules { name: "rules".to_owned(), rows: [("a/b.mat".to_owned(), row)].into(), ..Rules::default() };
+    let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
+    add_rules(&rules, &rules_path, &mut outputs).unwrap();
+    add_tolerances(&ToleranceTable::default(), &tolerances_path, &mut outputs).unwrap();
+    outputs.persist().unwrap();
+    let levels = br#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}, {"name": "Level 2", "axis": "Q", "points": [[1, 0.1], [3, 0.4]]}]"#;
+    let of = |name: &str, path: &Path| (name.to_owned(), std::fs::read(path).unwrap());
+    [
+        of(STUDY, &study_path),
+        of(RULES, &rules_path),
+        of(TOLERANCES, &tolerances_path),
+        (LEVELS.to_owned(), levels.to_vec()),
+    ]
+}
+
+/// Opens what is read from files alone from a file of its own; gives whether that went well. A study is what a window lost too.
+fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).map_err(|error| error.to_string())?;
+    let error = match name {
+        STUDY => {
+            std::fs::write(folder.path().join("small.lock"), "").map_err(|error| error.to_string())?;
+            lost_studies(folder.path());
+            open_study_of(&path, &small_dataset(), &Default::default()).err()
+        }
+        TOLERANCES => load_tolerances(&path).err(),
+        LEVELS => read_levels(&path).err(),
+        _ => load_rules(&path).err(),
+    };
+    let words = error.map(|error| error.to_string().replace(&folder.path().display().to_string(), ""));
+    let read = words.is_none();
+    check_said(name, words.map(|words| words.trim_start_matches('/').to_owned()))?;
+    Ok(read)
+}
+
+/// One damage: a flipped bit, a hard number, a cut, a piece twice, a piece of another place.
+fn damage(bytes: &mut Vec<u8>, dice: &mut Dice) {
+    let at = dice.below(bytes.len());
+    match dice.below(6) {
+        _ if bytes.is_empty() => {}
+        0 => bytes[at] ^= 1 << dice.below(8),
+        1 => {
+            let number = dice.of_list(&HARD).to_le_bytes();
+            let end = (at + number.len()).min(bytes.len());
+            bytes[at..end].copy_from_slice(&number[..end - at]);
+        }
+        2 if dice.once_in(3) => bytes.truncate(at),
+        2 => bytes[at] = dice.next() as u8,
+        3 => {
+            let end = (at + 1 + dice.below(64)).min(bytes.len());
+            let piece = bytes[at..end].to_vec();
+            let times = if dice.once_in(20) { 2000 } else { 1 };
+            bytes.splice(at..at, piece.repeat(times));
+        }
+        4 => {
+            let end = (at + 1 + dice.below(32)).min(bytes.len());
+            bytes.drain(at..end);
+        }
+        _ => {
+            let from = dice.below(bytes.len());
+            let length = 16.min(bytes.len() - from).min(bytes.len() - at);
+            bytes.copy_within(from..from + length, at);
+        }
+    }
+}
+
+/// The file of an execution: one of the corpus, damaged, or one of a grammar, damaged or not.
+fn file_of(dice: &mut Dice) -> NamedBytes {
+    let grammars: [fn(&mut Dice) -> NamedBytes; 10] = [
+        matlab::file,
+        matlab::file_of_objects,
+        hdf5::file,
+        octave::file,
+        logs::file,
+        texts::json,
+        texts::program_json,
+        texts::table,
+        texts::literals,
+        texts::numpy_or_archive,
+    ];
+    let of_corpus = dice.once_in(3);
+    let (name, mut bytes) = if of_corpus { dice.of_list(&CORPUS).clone() } else { (*dice.of_list(&grammars))(dice) };
+    let damages = if of_corpus { 1 + dice.below(4) } else { dice.below(3) };
+    (0..damages).for_each(|_| damage(&mut bytes, dice));
+    (name, bytes)
+}
+
+/// What became of the files of a run.
+#[derive(Default)]
+struct Tally {
+    read: AtomicU64,
+    slowest_ms: AtomicU64,
+    largest: AtomicU64,
+    failures: Mutex<Vec<String>>,
+}
+
+/// Reads a file as models, as records, and as a dataset where it is JSON, or as what it is called; whether anything was found.
+fn read(name: &str, bytes: &[u8]) -> Result<bool, String> {
+    if [STUDY, RULES, TOLERANCES, LEVELS].contains(&name) {
+        return opened(name, bytes);
+    }
+    let budget = || ReadingBudget::new(MOST_MEMORY).with_work(MOST_WORK);
+    let models = models_of_bytes(bytes, name, &budget());
+    if let Ok(found) = &models {
+        found.models.iter().try_for_each(check_finite)?;
+    }
+    let count = models.as_ref().map_or(0, |found| found.models.len());
+    check_words(name, models.err())?;
+    let records = records_of_bytes(bytes, name, &budget());
+    let tables = records.as_ref().map_or(0, |found| found.tables.len());
+    check_words(name, records.err())?;
+    let mut is_dataset = false;
+    if name.ends_with("json") {
+        match load_dataset_bytes(bytes, DatasetOrigin::File(PathBuf::from(name))) {
+            Ok(loaded) => is_dataset = !Study::new(loaded.dataset).dataset.conditions().is_empty(),
+            Err(error) => check_words(name, Some(error))?,
+        }
+    }
+    Ok(count + tables > 0 || is_dataset)
+}
+
+fn check_words(name: &str, error: Option<gdcm_io::FileError>) -> Result<(), String> {
+    check_said(name, error.map(|error| error.to_string()))
+}
+
+fn check_said(name: &str, words: Option<String>) -> Result<(), String> {
+    let Some(words) = words else { return Ok(()) };
+    if !words.starts_with(name) || words.len() > 4000 || words.contains(|letter: char| letter.is_control()) {
+        return Err(format!("an error that cannot be shown: {words:?}"));
+    }
+    Ok(())
+}
+
+fn check_finite(model: &FoundModel) -> Result<(), String> {
+    let matrices = model.draft.matrices.iter().flatten().flat_map(|matrix| matrix.iter());
+    let response = model
+        .draft
+        .response
+        .iter()
+        .flat_map(|response| response.omega.iter().chain(&response.re.values).chain(&response.im.values));
+    let timing = model.draft.timing.sample_time_s.iter();
+    let wrong = matrices.chain(response).chain(timing).find(|value| !value.is_finite());
+    wrong.map_or(Ok(()), |value| Err(format!("the model {} has the number {value}", model.draft.name)))
+}
+
+/// Tries one file; why it failed.
+fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
+    let begun = Instant::now();
+    let mut outcome = Ok(Ok(false));
+    let memory = allocation_counter::measure(|| {
+        outcome = catch_unwind(AssertUnwindSafe(|| read(name, bytes)));
+    });
+    let (time, limit) = (begun.elapsed(), 2 * MOST_MEMORY + BESIDE + 4 * bytes.len() as u64);
+    tally.slowest_ms.fetch_max(time.as_millis() as u64, Ordering::Relaxed);
+    tally.largest.fetch_max(memory.bytes_max, Ordering::Relaxed);
+    let found = outcome.map_err(|_| "it panicked".to_owned())??;
+    tally.read.fetch_add(u64::from(found), Ordering::Relaxed);
+    if memory.bytes_max > limit {
+        return Err(format!("it took {} bytes of memory", memory.bytes_max));
+    }
+    if time > LONGEST { Err(format!("it took {time:?}")) } else { Ok(()) }
+}
+
+/// Tries as many files, or for so long, on all cores.
+fn run(seed: u64, executions: u64, until: Option<Instant>) {
+    let (tally, next) = (Tally::default(), AtomicU64::new(0));
+    let begun = Instant::now();
+    rayon::scope(|scope| {
+        for _ in 0..rayon::current_num_threads() {
+            scope.spawn(|_| {
+                loop {
+                    let execution = next.fetch_add(1, Ordering::Relaxed);
+                    let is_over = until.is_some_and(|until| Instant::now() >= until) || execution >= executions;
+                    if is_over || tally.failures.lock().unwrap().len() >= MOST_FAILURES {
+                        return;
+                    }
+                    let file = file_of(&mut Dice::of(seed, execution));
+                    if let Err(why) = tried(&file, &tally) {
+                        let path = std::env::temp_dir().join(format!("gdcm-fuzz-{seed}-{execution}-{}", file.0));
+                        let kept =
+                            std::fs::write(&path, &file.1).map_or(String::new(), |()| path.display().to_string());
+                        let words = format!("execution {execution} of seed {seed}: {why} ({kept})");
+                        println!("{words}");
+                        tally.failures.lock().unwrap().push(words);
+                    }
+                }
+            });
+        }
+    });
+    let tried = next.into_inner().min(executions);
+    println!(
+        "{tried} files tried in {:.0} s, {} read all the same; longest {} ms, most memory {} KiB",
+        begun.elapsed().as_secs_f64(),
+        tally.read.into_inner(),
+        tally.slowest_ms.into_inner(),
+        tally.largest.into_inner() >> 10
+    );
+    let failures = tally.failures.into_inner().unwrap();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn every_reader_ends_with_an_answer_in_time_within_its_budget() {
+    run(20_261_122, tries(1_000, 20_000), None);
+}
+
+#[test]
+#[ignore = "as long as the environment says: GDCM_FUZZ_EXECUTIONS or GDCM_FUZZ_SECONDS, GDCM_FUZZ_SEED, GDCM_FUZZ_FILE"]
+fn long() {
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    if let Some(path) = std::env::var_os("GDCM_FUZZ_FILE") {
+        let name = Path::new(&path).file_name().unwrap().to_string_lossy().into_owned();
+        let outcome = tried(&(name, std::fs::read(&path).unwrap()), &Tally::default());
+        return assert_eq!(outcome, Ok(()));
+    }
+    let seconds = number("GDCM_FUZZ_SECONDS");
+    let executions = number("GDCM_FUZZ_EXECUTIONS").unwrap_or(if seconds.is_some() { u64::MAX } else { 100_000 });
+    let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
+    run(number("GDCM_FUZZ_SEED").unwrap_or(1), executions, until);
+}

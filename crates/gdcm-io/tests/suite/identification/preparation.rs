@@ -1,0 +1,424 @@
+//! From records as logged to segments.
+
+use super::common::{known, list, matrix, noise};
+use crate::made_up::tries;
+use gdcm_model::executor::Sequential;
+use gdcm_sysid::identification::*;
+use nalgebra::DMatrix;
+use proptest::prelude::*;
+
+/// A record of `samples` rows at 50 Hz: two inputs and two outputs that wander, each sample another value.
+fn wandering(samples: usize) -> FlightRecord {
+    let column = |seed: u64| {
+        let mut value = 0.0;
+        noise(seed, samples)
+            .into_iter()
+            .map(|step| {
+                value = 0.99 * value + step;
+                value
+            })
+            .collect::<Vec<_>>()
+    };
+    let columns: Vec<_> = (0..4).map(|c| column(31 + c)).collect();
+    FlightRecord {
+        name: "sweep".into(),
+        time_s: (0..samples).map(|n| 0.02 * n as f64).collect(),
+        inputs: DMatrix::from_fn(samples, 2, |n, i| columns[i][n]),
+        outputs: DMatrix::from_fn(samples, 2, |n, o| columns[2 + o][n]),
+    }
+}
+
+fn settings() -> Preparation {
+    Preparation::of(&["LON", "PED"], &["P", "Q"])
+}
+
+fn prepared(record: &FlightRecord, settings: &Preparation) -> Prepared {
+    prepare(std::slice::from_ref(record), settings, &Sequential).unwrap()
+}
+
+fn words(cautions: &[RecordCaution]) -> String {
+    cautions.iter().map(|caution| caution.to_string() + "\n").collect()
+}
+
+#[test]
+fn the_known_record_becomes_the_known_pieces() {
+    let known = known();
+    let case = &known["prepare"];
+    let rows: Vec<Vec<f64>> = case["y"].as_array().unwrap().iter().map(list).collect();
+    let record = FlightRecord {
+        name: "made up".into(),
+        time_s: list(&case["t"]),
+        inputs: matrix(&case["u"]),
+        outputs: DMatrix::from_fn(rows.len(), 2, |n, o| rows[n][o]),
+    };
+    let mut settings = Preparation::of(&["u"], &["y1", "y2"]);
+    let delays = list(&case["delay_y"]);
+    (0..2).for_each(|o| settings.outputs[o].delay_s = delays[o]);
+    settings.least_segment_s = case["min_len_s"].as_f64().unwrap();
+    settings.longest_bridge = case["max_gap"].as_u64().unwrap() as usize;
+    let prepared = prepared(&record, &settings);
+    let expected = case["pieces"].as_array().unwrap();
+    assert_eq!(prepared.segments.len(), expected.len());
+    for (segment, expected) in prepared.segments.iter().zip(expected) {
+        assert!((segment.sample_time_s - expected["dt"].as_f64().unwrap()).abs() < 1e-9);
+        assert_eq!(segment.inputs.nrows() as u64, expected["samples"].as_u64().unwrap());
+        assert!((segment.inputs[0] - expected["first_u"].as_f64().unwrap()).abs() < 1e-9);
+        assert!((&segment.outputs - matrix(&expected["y"])).amax() < 1e-9);
+    }
+    let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
+    assert_eq!(gaps, ["2.45 to 2.60 s: y1 missing, bridged", "7.45 to 9.50 s: rows missing, left out"]);
+}
+
+#[test]
+fn a_record_without_gaps_stays_as_it_is() {
+    let record = wandering(1000);
+    let prepared = prepared(&record, &settings());
+    assert_eq!((prepared.segments.len(), prepared.cautions.len(), prepared.records[0].gaps.len()), (1, 0, 0));
+    // Stamps of 0.02 n and a grid of n 0.02 differ by rounding, so values are interpolated by as much.
+    assert!((&prepared.segments[0].inputs - &record.inputs).amax() < 1e-9);
+    assert!((&prepared.segments[0].outputs - &record.outputs).amax() < 1e-9);
+    assert!((prepared.records[0].used_s - 20.0).abs() < 1e-9);
+}
+
+#[test]
+fn three_missing_samples_are_bridged_by_a_straight_line_and_four_split_the_record() {
+    let mut record = wandering(1500);
+    (700..703).for_each(|n| record.outputs[(n, 1)] = f64::NAN);
+    let bridged = prepared(&record, &settings());
+    assert_eq!(bridged.segments.len(), 1);
+    let middle = 0.5 * (record.outputs[(699, 1)] + record.outputs[(703, 1)]);
+    assert!((bridged.segments[0].outputs[(701, 1)] - middle).abs() < 1e-9);
+    assert_eq!(bridged.records[0].gaps[0].treatment, Treatment::Bridged);
+
+    record.outputs[(703, 1)] = f64::NAN;
+    let split = prepared(&record, &settings());
+    assert_eq!(split.segments.len(), 2);
+    assert_eq!(split.records[0].gaps[0].to_string(), "13.98 to 14.08 s: Q missing, left out");
+    assert!((split.segments[1].start_s - 14.08).abs() < 0.021);
+    assert!(
+        (split.segments[1].outputs.row(10)
+            - record.outputs.row((split.segments[1].start_s / 0.02).round() as usize + 10))
+        .amax()
+            < 1e-9
+    );
+}
+
+#[test]
+fn missing_stamps_and_missing_rows_are_gaps_with_their_own_words() {
+    let mut record = wandering(2000);
+    (600..650).for_each(|n| record.time_s[n] = f64::NAN);
+    (1200..2000).for_each(|n| record.time_s[n] += 4.0);
+    let prepared = prepared(&record, &settings());
+    let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
+    assert_eq!(gaps, ["11.98 to 13.00 s: time stamps missing, left out", "23.98 to 28.00 s: rows missing, left out"]);
+    assert_eq!(prepared.segments.len(), 3);
+}
+
+#[test]
+fn short_pieces_are_dropped_with_a_caution_and_a_place() {
+    let mut record = wandering(1500);
+    record.outputs[(1100, 0)] = f64::NAN;
+    (1101..1110).for_each(|n| record.inputs[(n, 0)] = f64::NAN);
+    let prepared = prepared(&record, &settings());
+    assert_eq!(prepared.segments.len(), 1);
+    assert!(words(&prepared.cautions).contains("sweep: 7.8 s from 22.2"), "{}", words(&prepared.cautions));
+    assert!(matches!(prepared.records[0].gaps.last().unwrap().cause, Cause::SegmentTooShort(_)));
+}
+
+#[test]
+fn an_output_that_stands_still_while_the_others_move_is_a_gap() {
+    let mut record = wandering(2000);
+    let value = record.outputs[(800, 0)];
+    (801..900).for_each(|n| record.outputs[(n, 0)] = value);
+    let cut = prepared(&record, &settings());
+    assert_eq!(cut.segments.len(), 2);
+    assert_eq!(cut.records[0].gaps[0].to_string(), "16.00 to 18.00 s: P frozen, left out");
+    let kept = prepared(&record, &Preparation { keep_frozen: true, ..settings() });
+    assert_eq!(kept.segments.len(), 1);
+}
+
+#[test]
+fn a_held_input_and_a_coarse_output_are_not_frozen() {
+    let mut record = wandering(3000);
+    (0..2000).for_each(|n| record.inputs[(n, 1)] = 50.0);
+    // A resolution of 3 in a signal of about 7 repeats values for a second and more.
+    record.outputs.column_mut(1).iter_mut().for_each(|y| *y = (*y / 3.0).round() * 3.0);
+    let prepared = prepared(&record, &settings());
+    assert_eq!(prepared.segments.len(), 1, "{:?}", prepared.records);
+}
+
+#[test]
+fn a_record_at_rest_before_its_sweep_is_not_frozen() {
+    let mut record = wandering(2000);
+    for n in 0..300 {
+        record.inputs.row_mut(n).fill(40.0);
+        record.outputs.row_mut(n).fill(0.0);
+    }
+    assert_eq!(prepared(&record, &settings()).segments.len(), 1);
+}
+
+#[test]
+fn channels_with_the_same_gap_are_named_together() {
+    let mut record = wandering(1500);
+    for n in 600..640 {
+        record.outputs.row_mut(n).fill(f64::NAN);
+        record.inputs[(n, 0)] = f64::INFINITY;
+    }
+    let prepared = prepared(&record, &settings());
+    assert_eq!(prepared.records[0].gaps.len(), 1);
+    assert!(prepared.records[0].gaps[0].to_string().contains("LON, P and Q missing"));
+}
+
+#[test]
+fn delays_and_holds_shift_a_channel_the_right_way() {
+    // Every channel is a ramp of 1 per second, so that a channel's value less the time is its shift.
+    let time_s: Vec<f64> = (0..1000).map(|n| 0.02 * n as f64).collect();
+    let ramp = DMatrix::from_fn(1000, 2, |n, _| 0.02 * n as f64);
+    let record = FlightRecord { name: "ramp".into(), time_s, inputs: ramp.clone(), outputs: ramp };
+    let mut settings = settings();
+    settings.outputs[0].delay_s = 0.05;
+    settings.inputs[0].hold = Hold::Command { hold_s: 0.1 };
+    settings.outputs[1].hold = Hold::SlowSensor { hold_s: 0.2 };
+    let segment = prepared(&record, &settings).segments.remove(0);
+    let time_s = segment.start_s + 0.02 * 100.0;
+    let shifts =
+        [segment.inputs[(100, 0)], segment.inputs[(100, 1)], segment.outputs[(100, 0)], segment.outputs[(100, 1)]];
+    for (value, shift) in shifts.iter().zip([-0.05, 0.0, 0.05, 0.1]) {
+        assert!((value - time_s - shift).abs() < 1e-9, "{value} {time_s} {shift}");
+    }
+}
+
+#[test]
+fn fresh_samples_of_a_slow_sensor_are_joined_by_straight_lines() {
+    let mut record = wandering(1000);
+    let slow = |n: usize| (0.3 * 0.02 * (n / 5 * 5) as f64).sin();
+    (0..1000).for_each(|n| record.outputs[(n, 0)] = slow(n));
+    // The sensor reads the same value for two seconds and more: readings, not a gap.
+    (0..1000).for_each(|n| record.inputs[(n, 1)] = if n < 500 { 20.0 } else { slow(n) });
+    let mut settings = settings();
+    settings.outputs[0].hold = Hold::FreshSamples;
+    settings.inputs[1].hold = Hold::FreshSamples;
+    let prepared = prepared(&record, &settings);
+    assert_eq!(prepared.segments.len(), 1);
+    for n in 0..990 {
+        // Straight lines over 0.1 s of a sine of 0.3 rad/s are off by (0.03)^2 / 8, about 1e-4.
+        assert!((prepared.segments[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4, "{n}");
+    }
+}
+
+#[test]
+fn stairs_in_an_input_raise_a_caution_with_three_choices() {
+    let mut record = wandering(2000);
+    let stair: Vec<f64> = (0..2000).map(|n| record.inputs[(n / 5 * 5, 0)]).collect();
+    record.inputs.column_mut(0).copy_from_slice(&stair);
+    let mut settings = settings();
+    let text = words(&prepared(&record, &settings).cautions);
+    assert!(text.contains("LON: 80 % of consecutive samples are equal, it changes every 100 ms"), "{text}");
+    for choice in ["50 ms later", "fresh samples", "50 ms earlier", "nothing done"] {
+        assert!(text.contains(choice), "{choice}: {text}");
+    }
+    settings.inputs[0].hold = Hold::Acts;
+    assert_eq!(prepared(&record, &settings).cautions, []);
+}
+
+#[test]
+fn an_input_at_rest_between_its_sweeps_is_no_stair() {
+    let mut record = wandering(3000);
+    (0..2500).for_each(|n| record.inputs[(n, 0)] = 50.0);
+    assert_eq!(prepared(&record, &settings()).cautions, []);
+}
+
+#[test]
+fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
+    let mut record = wandering(1000);
+    let jitter = noise(5, 1000);
+    record.time_s.iter_mut().zip(&jitter).for_each(|(t, x)| *t += 0.008 * x);
+    (0..1000).for_each(|n| record.outputs[(n, 0)] = record.time_s[n].sin());
+    let refused = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err();
+    assert!(matches!(refused, PreparationError::UnevenSampling { percent, .. } if percent > 20.0));
+    let allowed = Preparation { resample: true, ..settings() };
+    let prepared = prepared(&record, &allowed);
+    assert!(words(&prepared.cautions).contains("interpolated to even steps"));
+    let segment = &prepared.segments[0];
+    for n in 0..segment.outputs.nrows() {
+        // Straight lines over at most 0.036 s of a sine of 1 rad/s: 0.036^2 / 8 = 1.6e-4.
+        assert!((segment.outputs[(n, 0)] - (segment.start_s + n as f64 * segment.sample_time_s).sin()).abs() < 1.7e-4);
+    }
+}
+
+#[test]
+fn one_late_stamp_is_no_jitter() {
+    let mut record = wandering(1000);
+    record.time_s[400] += 0.009;
+    assert_eq!(prepared(&record, &settings()).segments.len(), 1);
+}
+
+#[test]
+fn time_that_does_not_go_on_is_refused_with_its_row() {
+    let mut record = wandering(1000);
+    record.time_s[617] = record.time_s[616];
+    let text = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err().to_string();
+    assert!(text.contains("time goes from 12.32 s to 12.32 s in row 618"), "{text}");
+}
+
+#[test]
+fn channels_that_do_not_move_are_named() {
+    let mut record = wandering(1000);
+    record.inputs.column_mut(1).fill(50.0);
+    record.outputs.column_mut(0).fill(0.1);
+    let text = prepare(&[record], &settings(), &Sequential).unwrap_err().to_string();
+    assert_eq!(text, "PED and P never moved in any record: leave them out");
+}
+
+#[test]
+fn copies_twins_and_wrong_units_raise_cautions() {
+    let mut record = wandering(1000);
+    let stick = record.inputs.column(0).into_owned();
+    record.outputs.column_mut(0).copy_from(&(&stick * -2.0).add_scalar(5.0));
+    let pedal = record.inputs.column(1) * 0.05 + &stick;
+    record.inputs.column_mut(1).copy_from(&pedal);
+    record.outputs[(500, 1)] = 400.0;
+    let mut settings = settings();
+    settings.outputs[1].limit = Some(300.0);
+    let text = words(&prepared(&record, &settings).cautions);
+    assert!(text.contains("Q reaches 400.000, beyond 300: check its unit"), "{text}");
+    assert!(text.contains("LON and PED always moved together"), "{text}");
+    assert!(text.contains("P is a copy of the input LON: leave it out"), "{text}");
+}
+
+#[test]
+fn records_that_are_too_short_say_how_short() {
+    let text = prepare(&[wandering(300)], &settings(), &Sequential).unwrap_err().to_string();
+    assert!(
+        text.starts_with("nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_unused_record_does_not_spoil_the_others() {
+    let mut lost = wandering(1000);
+    lost.name = "lost".into();
+    lost.outputs.fill(f64::NAN);
+    let prepared = prepare(&[lost, wandering(1000)], &settings(), &Sequential).unwrap();
+    assert_eq!(prepared.segments.len(), 1);
+    assert_eq!(prepared.segments[0].record, 1);
+    assert!(words(&prepared.cautions).contains("lost: nothing of it could be used"));
+    assert_eq!(prepared.records[0].used_s, 0.0);
+}
+
+#[test]
+fn hostile_records_are_refused_or_cut_and_never_panic() {
+    let good = wandering(1000);
+    let of = |record: FlightRecord| prepare(&[record], &settings(), &Sequential);
+    assert_eq!(prepare(&[], &settings(), &Sequential), Err(PreparationError::NoRecords));
+    assert!(matches!(
+        prepare(std::slice::from_ref(&good), &Preparation::of(&[], &["P"]), &Sequential),
+        Err(PreparationError::NoChannels(_))
+    ));
+    let part = |rows: usize| FlightRecord {
+        time_s: good.time_s[..rows].to_vec(),
+        inputs: good.inputs.rows(0, rows).into(),
+        outputs: good.outputs.rows(0, rows).into(),
+        ..good.clone()
+    };
+    for rows in 0..3 {
+        assert!(matches!(of(part(rows)), Err(PreparationError::NothingLeft { .. })), "{rows}");
+    }
+    let other = FlightRecord { inputs: DMatrix::zeros(1000, 3), ..good.clone() };
+    assert!(matches!(of(other), Err(PreparationError::ChannelsDiffer { found: 3, named: 2, .. })));
+    let other = FlightRecord { time_s: vec![0.0; 7], ..good.clone() };
+    assert!(matches!(of(other), Err(PreparationError::LengthsDiffer { stamps: 7, .. })));
+    for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let other = FlightRecord { time_s: vec![value; 1000], ..good.clone() };
+        assert!(matches!(of(other), Err(PreparationError::NothingLeft { .. })));
+        let other = FlightRecord { outputs: DMatrix::from_element(1000, 2, value), ..good.clone() };
+        assert!(matches!(of(other), Err(PreparationError::NothingLeft { .. })));
+    }
+    // Stamps of absurd size: the grid is laid only where there are samples.
+    let mut far = good.clone();
+    far.time_s[999] = 1e300;
+    assert_eq!(of(far).unwrap().segments.len(), 1);
+    let mut infinite = good.clone();
+    (infinite.time_s[0], infinite.time_s[999]) = (-1.7e308, 1.7e308);
+    assert!(of(infinite).is_err());
+    for seconds in [f64::NAN, f64::INFINITY, 1e9] {
+        let mut shifted = settings();
+        shifted.inputs[0].delay_s = seconds;
+        assert!(matches!(
+            prepare(std::slice::from_ref(&good), &shifted, &Sequential),
+            Err(PreparationError::Shift { .. })
+        ));
+        let least = Preparation { least_segment_s: -seconds, ..settings() };
+        assert!(matches!(
+            prepare(std::slice::from_ref(&good), &least, &Sequential),
+            Err(PreparationError::LeastSegment(_))
+        ));
+    }
+    let bridge = Preparation { longest_bridge: usize::MAX, ..settings() };
+    assert!(matches!(prepare(std::slice::from_ref(&good), &bridge, &Sequential), Err(PreparationError::Bridge(_))));
+    let mut huge = good;
+    huge.outputs[(3, 0)] = 1e300;
+    assert!(
+        prepare(&[huge], &settings(), &Sequential)
+            .is_ok_and(|prepared| prepared.segments.iter().all(|p| p.outputs.iter().all(|y| y.is_finite())))
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(tries(16, 48)))]
+
+    #[test]
+    fn pieces_are_finite_within_the_samples_and_never_longer_than_the_record(
+        holes in prop::collection::vec((0_usize..3000, 1_usize..40, 0_usize..5), 0..12),
+        delay_s in -0.2..0.2,
+    ) {
+        let mut record = wandering(3000);
+        for &(from, length, channel) in &holes {
+            for n in from..(from + length).min(3000) {
+                match channel {
+                    0 | 1 => record.inputs[(n, channel)] = f64::NAN,
+                    2 | 3 => record.outputs[(n, channel - 2)] = f64::INFINITY,
+                    _ => record.time_s[n] = f64::NAN,
+                }
+            }
+        }
+        let mut settings = settings();
+        settings.least_segment_s = 1.0;
+        settings.outputs[0].delay_s = delay_s;
+        let prepared = prepared(&record, &settings);
+        let greatest = record.inputs.iter().filter(|x| x.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+        prop_assert!(prepared.records[0].used_s <= 60.0 + 1e-9);
+        for segment in &prepared.segments {
+            prop_assert!(segment.outputs.iter().all(|y| y.is_finite()));
+            prop_assert!(segment.inputs.amax() <= greatest);
+            prop_assert_eq!(segment.inputs.nrows(), segment.outputs.nrows());
+            // Samples without a delay are those of the record wherever the record has them.
+            for n in 0..segment.inputs.nrows() {
+                let row = (segment.start_s / 0.02).round() as usize + n;
+                let logged = record.inputs[(row, 0)];
+                if logged.is_finite() && record.time_s[row].is_finite() {
+                    prop_assert!((segment.inputs[(n, 0)] - logged).abs() < 1e-9);
+                }
+            }
+        }
+        for pair in prepared.segments.windows(2) {
+            prop_assert!(pair[1].start_s > pair[0].start_s + 0.02 * (pair[0].inputs.nrows() as f64 + 2.5));
+        }
+    }
+
+    #[test]
+    fn records_are_prepared_each_by_itself(order in Just(vec![0_usize, 1, 2]).prop_shuffle()) {
+        let records: Vec<_> = (0..3).map(|k| {
+            let mut record = wandering(1000 + 200 * k);
+            record.outputs.scale_mut(1.0 + k as f64);
+            record
+        }).collect();
+        let straight = prepare(&records, &settings(), &Sequential).unwrap();
+        let shuffled: Vec<_> = order.iter().map(|&k| records[k].clone()).collect();
+        let prepared = prepare(&shuffled, &settings(), &Sequential).unwrap();
+        for (segment, &k) in prepared.segments.iter().zip(&order) {
+            prop_assert_eq!(&segment.outputs, &straight.segments[k].outputs);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Made-up aircraft, flights of them in closed loop through gusts, and datasets: for the tests here and for those of the program.
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_sysid::identification::FlightRecord;
+use nalgebra::{DMatrix, DVector, dmatrix};
+use serde_json::{Value, json};
+
+/// How often something is tried: `few` times, or `many` where the environment says `GDCM_THOROUGH`, as it does before a change is
+/// taken in.
+pub fn tries<N>(few: N, many: N) -> N {
+    if std::env::var_os("GDCM_THOROUGH").is_some() { many } else { few }
+}
+
+/// What disturbs a flight; by default the air is still and the sensors are exact.
+#[derive(Clone, Copy, Default)]
+pub struct Gusts {
+    /// Standard deviation of what gusts do to each state.
+    pub states: f64,
+    /// Standard deviation of the noise of each sensor.
+    pub sensors: f64,
+}
+
+impl Gusts {
+    /// Light gusts and good sensors.
+    pub fn light() -> Self {
+        Self { states: 0.01, sensors: 0.01 }
+    }
+}
+
+/// How a flight is flown and logged.
+#[derive(Clone)]
+pub struct Flight {
+    /// The aircraft.
+    pub aircraft: StateSpace,
+    /// What disturbs it.
+    pub gusts: Gusts,
+    /// Inputs = sweep - feedback outputs.
+    pub feedback: DMatrix<f64>,
+    /// Length of a record \[s\].
+    pub length_s: f64,
+    /// Sample time of the log \[s\].
+    pub sample_time_s: f64,
+}
+
+impl Flight {
+    /// 40 s at 25 Hz with a light feedback.
+    pub fn of(aircraft: StateSpace, gusts: Gusts) -> Self {
+        Self { aircraft, gusts, feedback: dmatrix![0.2, 0.1; -0.1, 0.3], length_s: 40.0, sample_time_s: 0.04 }
+    }
+
+    /// Records of it, all different, the same ones for the same seed.
+    pub fn records(&self, seed: u64, count: usize) -> Vec<FlightRecord> {
+        (0..count).map(|record| self.record(seed, record)).collect()
+    }
+
+    /// Steps of a fraction of the sample time; inputs straight within a step.
+    fn record(&self, seed: u64, record: usize) -> FlightRecord {
+        const FINER: usize = 10;
+        let step_s = self.sample_time_s / FINER as f64;
+        let (a, b, c) = (self.aircraft.a(), self.aircraft.b(), self.aircraft.c());
+        let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
+        let mut random =
+            Random(seed.wrapping_mul(1000).wrapping_add(record as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        // Closed loop: dx/dt = (A - B K C) x + B sweep + gusts; over a step of length h with the midpoint of the sweep.
+        let closed = a - b * &self.feedback * c;
+        let transition = (&closed * step_s).exp();
+        let mut both = DMatrix::zeros(order + inputs, order + inputs);
+        both.view_mut((0, 0), (order, order)).copy_from(&(&closed * step_s));
+        both.view_mut((0, order), (order, inputs)).copy_from(&(b * step_s));
+        let held = both.exp().view((0, order), (order, inputs)).into_owned();
+        let phases: Vec<f64> = (0..40 * inputs).map(|_| std::f64::consts::TAU * random.uniform()).collect();
+        let sweep = |time: f64, input: usize| {
+            // One input of a record moves, the others a little.
+            let size = if input == record % inputs { 1.0 } else { 0.3 };
+            let lines = (0..40).map(|line| {
+                let omega = 0.25 + 0.2 * line as f64 + 0.01 * (input + inputs * record) as f64;
+                (omega * time + phases[line * inputs + input]).sin() / (1.0 + 0.2 * omega)
+            });
+            0.3 * size * lines.sum::<f64>()
+        };
+        let samples = (self.length_s / self.sample_time_s).round() as usize;
+        let trim = DVector::from_fn(outputs, |output, _| 0.5 + output as f64 + record as f64);
+        let mut x = DVector::from_fn(order, |_, _| random.normal());
+        let mut gust = DVector::zeros(order);
+        let (mut u, mut y) = (DMatrix::zeros(samples, inputs), DMatrix::zeros(samples, outputs));
+        for sample in 0..samples {
+            let time = sample as f64 * self.sample_time_s;
+            let output = c * &x;
+            let command = DVector::from_fn(inputs, |input, _| sweep(time, input));
+            let input = command - &self.feedback * &output;
+            u.row_mut(sample).tr_copy_from(&input.add_scalar(5.0));
+            let noise = DVector::from_fn(outputs, |_, _| self.gusts.sensors * random.normal());
+            y.row_mut(sample).tr_copy_from(&(output + &trim + noise));
+            for fine in 0..FINER {
+                let middle = time + (fine as f64 + 0.5) * step_s;
+                let command = DVector::from_fn(inputs, |input, _| sweep(middle, input));
+                // Gusts of a second.
+                gust.iter_mut().for_each(|gust| *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust));
+                x = &transition * x + &held * command + &gust * (step_s * self.gusts.states);
+            }
+        }
+        FlightRecord {
+            name: format!("flight {}", record + 1),
+            time_s: (0..samples).map(|sample| sample as f64 * self.sample_time_s).collect(),
+            inputs: u,
+            outputs: y,
+        }
+    }
+}
+
+/// Numbers that look random, by xorshift.
+struct Random(u64);
+
+impl Random {
+    fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// The sum of twelve, less 6: variance one.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
+/// A stable aircraft of two inputs and outputs.
+pub fn stable_aircraft() -> StateSpace {
+    StateSpace::new(
+        dmatrix![-0.4, 2.1, 0.0, 0.0; -2.1, -0.4, 0.0, 0.3; 0.0, 0.0, -1.5, 0.8; 0.2, 0.0, -1.1, -0.6],
+        dmatrix![1.0, 0.2; 0.0, 0.6; 0.5, -1.0; -0.3, 0.8],
+        dmatrix![0.6, 1.0, 0.3, 0.0; 0.2, 0.5, -0.8, 1.0],
+        DMatrix::zeros(2, 2),
+    )
+    .expect("its matrices fit")
+}
+
+/// Two lags, `c` beside what each output sees of the other's, as one physics and one identified model.
+pub fn two_lags(physics: [[f64; 2]; 2], identified: [[f64; 2]; 2]) -> Value {
+    let lags = |c: [[f64; 2]; 2]| {
+        json!({"name": "model", "A": [[-1.0, 0.0], [0.0, -3.0]], "B": [[1.0, 0.0], [0.0, 1.0]], "C": c,
+            "D": [[0.0, 0.0], [0.0, 0.0]]})
+    };
+    let mut nominal = lags(physics);
+    nominal["role"] = json!("nominal");
+    json!({"format": "gdcm-dataset", "version": 1, "name": "two lags",
+        "inputs": [{"name": "I0", "unit": "%"}, {"name": "I1", "unit": "%"}],
+        "outputs": [{"name": "O0", "unit": "deg/s"}, {"name": "O1", "unit": "deg/s"}],
+        "on_axis": [["O0", "I0"], ["O1", "I1"]], "frequency_band": {"min": 0.5, "max": 12.0, "unit": "rad/s"},
+        "conditions": [{"id": 1, "name": "hover", "airspeed_kt": 0.0, "physics_models": [nominal],
+            "identified_models": [lags(identified)]}]})
+}

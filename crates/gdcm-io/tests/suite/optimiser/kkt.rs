@@ -1,0 +1,100 @@
+//! How far an answer is from the conditions of a minimum, computed from the channels alone.
+
+use gdcm_method::correction::{GainObjective, Problem, Quantity, Solution};
+use gdcm_model::dataset::Pair;
+
+/// A minimisation over channel values (inputs, then outputs), seen at one point.
+struct Point {
+    inputs: usize,
+    gradient: Vec<f64>,
+    /// Whether each channel is on its lower and on its upper bound.
+    bounds: Vec<(bool, bool)>,
+    held: Vec<Pair>,
+    /// Size of the terms whose slopes each channel's gradient sums.
+    sizes: Vec<f64>,
+}
+
+/// Residual of the gains in logarithms, relative to the size of the terms of each channel.
+pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
+    let mut gradient = vec![0.0; inputs + outputs];
+    let mut sizes = vec![1e-300; inputs + outputs];
+    let mut add = |channels: &[usize], delta: f64, gain: f64, weight: f64| {
+        let decibel = 2.0 * weight * (20.0 / std::f64::consts::LN_10).powi(2);
+        let (slope, size) = match problem.quantity {
+            Quantity::Gain(GainObjective::Ratio) => {
+                (2.0 * weight * gain * (gain - delta), 2.0 * weight * gain * (gain + delta))
+            }
+            _ => (decibel * (gain / delta).ln(), decibel),
+        };
+        for &channel in channels {
+            gradient[channel] += slope;
+            sizes[channel] += size;
+        }
+    };
+    for (pair, delta) in problem.delta.iter() {
+        if let (Some(delta), true) = (delta, problem.fitted[pair]) {
+            let gain = solution.inputs[pair.input] * solution.outputs[pair.output];
+            add(&[pair.input, inputs + pair.output], *delta, gain, 1.0);
+        }
+    }
+    for (output, gain) in solution.outputs.iter().enumerate() {
+        add(&[inputs + output], 1.0, *gain, problem.alpha);
+    }
+    let ends = (problem.bounds.lower, problem.bounds.upper);
+    let on = |gain: &f64| (*gain <= ends.0 * (1.0 + 1e-12), *gain >= ends.1 * (1.0 - 1e-12));
+    let bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+    residual(&Point { inputs, gradient, bounds, held: problem.constrained.marked().collect(), sizes })
+}
+
+/// Residual of the delays, relative to the size of the terms of each channel.
+pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
+    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
+    let mut gradient = vec![0.0; inputs + outputs];
+    let mut sizes = vec![1e-300; inputs + outputs];
+    for (pair, delta) in problem.delta.iter() {
+        if let (Some(delta), true) = (delta, problem.fitted[pair]) {
+            let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
+            for channel in [pair.input, inputs + pair.output] {
+                gradient[channel] += 2.0 * (sum - delta);
+                sizes[channel] += 2.0 * (sum + delta.abs());
+            }
+        }
+    }
+    for (output, delay) in solution.outputs.iter().enumerate() {
+        gradient[inputs + output] += 2.0 * problem.alpha * delay;
+        // Delays of a tenth of a second.
+        sizes[inputs + output] += 0.2 * problem.alpha;
+    }
+    let on = |delay: &f64| (*delay == 0.0, *delay == problem.bounds.upper);
+    let bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+    residual(&Point { inputs, gradient, bounds, held: problem.constrained.marked().collect(), sizes })
+}
+
+/// The steepest descent that is left, piece by piece: held entries tie the channels of a piece together, so that it can only move
+/// as a whole (inputs up and outputs down by the same amount), and not at all past a bound of any of its channels.
+fn residual(point: &Point) -> f64 {
+    let channels = point.gradient.len();
+    let mut piece: Vec<usize> = (0..channels).collect();
+    for pair in &point.held {
+        let (kept, merged) = (piece[pair.input], piece[point.inputs + pair.output]);
+        piece.iter_mut().filter(|piece| **piece == merged).for_each(|piece| *piece = kept);
+    }
+    let mut worst = 0.0_f64;
+    for name in 0..channels {
+        let members = (0..channels).filter(|&channel| piece[channel] == name);
+        let (mut slope, mut size, mut may_rise, mut may_fall) = (0.0, 1e-300, true, true);
+        for channel in members {
+            let (at_lower, at_upper) = point.bounds[channel];
+            let is_input = channel < point.inputs;
+            slope += if is_input { point.gradient[channel] } else { -point.gradient[channel] };
+            size += point.sizes[channel];
+            may_rise &= !(if is_input { at_upper } else { at_lower });
+            may_fall &= !(if is_input { at_lower } else { at_upper });
+        }
+        if (slope < 0.0 && may_rise) || (slope > 0.0 && may_fall) {
+            worst = worst.max(slope.abs() / size);
+        }
+    }
+    worst
+}

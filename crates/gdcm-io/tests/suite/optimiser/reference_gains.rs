@@ -1,0 +1,80 @@
+//! The certified minima of equation (7).
+
+use gdcm_method::correction::Outcome;
+use gdcm_model::dataset::Pair;
+
+use super::instances::gain_instances;
+use super::solved;
+
+#[test]
+fn every_certified_minimum_is_reached_and_proven() {
+    for instance in gain_instances() {
+        let solution = solved(&instance.problem);
+        let id = instance.id;
+        // The reference is certified to 1e-8.
+        assert!(
+            (solution.objective / instance.objective - 1.0).abs() <= 1e-8,
+            "{id}: {} is not {}",
+            solution.objective,
+            instance.objective
+        );
+        assert!(
+            matches!(solution.proof.outcome, Outcome::Proven { gap } if gap <= 1e-9),
+            "{id}: {:?}",
+            solution.proof.outcome
+        );
+        assert!(
+            solution.proof.lower_bound <= solution.objective
+                && solution.proof.lower_bound <= instance.objective * (1.0 + 1e-8),
+            "{id}"
+        );
+    }
+}
+
+#[test]
+fn held_entries_are_held_and_gains_stay_inside_their_bounds() {
+    for instance in gain_instances() {
+        let solution = solved(&instance.problem);
+        for pair in instance.problem.constrained.marked() {
+            let product = solution.inputs[pair.input] * solution.outputs[pair.output];
+            let target = solution.targets[pair].unwrap();
+            assert!((product / target - 1.0).abs() <= 1e-9, "{}: {pair:?} {product} is not {target}", instance.id);
+        }
+        for gain in solution.inputs.iter().chain(&solution.outputs) {
+            assert!(
+                (instance.problem.bounds.lower..=instance.problem.bounds.upper).contains(gain),
+                "{}: {gain}",
+                instance.id
+            );
+        }
+    }
+}
+
+#[test]
+fn entries_out_of_reach_are_missed_as_little_as_possible() {
+    for instance in gain_instances() {
+        let solution = solved(&instance.problem);
+        assert_eq!(solution.matched, instance.matched, "{}", instance.id);
+        let most = solution.unmatched.iter().map(|miss| (miss.target / miss.delta).ln().abs()).fold(0.0, f64::max);
+        // The reference's stage 1 stops at about 1e-9.
+        assert!((most - instance.residual).abs() <= 1e-7, "{}: {most} is not {}", instance.id, instance.residual);
+    }
+}
+
+#[test]
+fn products_equal_the_reference_where_the_minimum_is_unique() {
+    for instance in gain_instances() {
+        let solution = solved(&instance.problem);
+        for pair in instance.problem.delta.pairs() {
+            let Pair { output, input } = pair;
+            let product = solution.inputs[input] * solution.outputs[output];
+            let reference = instance.inputs[input] * instance.outputs[output];
+            // An objective known to 1e-8 fixes its minimum to about the root, 1e-4.
+            assert!((product / reference - 1.0).abs() <= 2e-4, "{}: {pair:?} {product} {reference}", instance.id);
+            if !instance.loose && instance.matched && instance.problem.alpha > 0.0 {
+                let (gain, reference) = (solution.outputs[output], instance.outputs[output]);
+                assert!((gain / reference - 1.0).abs() <= 2e-4, "{}: k_o {gain} {reference}", instance.id);
+            }
+        }
+    }
+}

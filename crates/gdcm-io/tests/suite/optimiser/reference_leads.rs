@@ -1,0 +1,175 @@
+//! The minima of the program of signed delays (M15.4), and the filters of the negative ones (M15.3).
+
+use gdcm_method::correction::{Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve};
+use gdcm_model::dataset::{Band, Pair, PairTable};
+use gdcm_model::response::{FrequencyGrid, LeadOrder};
+use proptest::prelude::*;
+use serde_json::Value;
+
+use super::instances::{numbers, table};
+use super::solved;
+
+/// A figure of seconds agrees to 1e-6 of it, or to a nanosecond.
+#[track_caller]
+fn assert_seconds(what: &str, found: f64, reference: f64) {
+    assert_within(what, found, reference, 1e-9);
+}
+
+#[track_caller]
+fn assert_within(what: &str, found: f64, reference: f64, least_s: f64) {
+    assert!((found - reference).abs() <= (1e-6 * reference.abs()).max(least_s), "{what}: {found} is not {reference}");
+}
+
+fn reference() -> Value {
+    serde_json::from_str(include_str!("../../../../../tests/data/reference/lead.json")).unwrap()
+}
+
+fn list<'a>(reference: &'a Value, name: &str) -> &'a [Value] {
+    reference[name].as_array().unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+fn design(entry: &Value) -> LeadDesign {
+    let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
+    let order = if entry["order"] == 1 { LeadOrder::First } else { LeadOrder::Second };
+    LeadDesign::new(LeadSettings { order, pole: number(&entry["pole"]), limit: 10.0 }, grid.omega().into())
+}
+
+fn program(entry: &Value) -> Problem {
+    let delta = table(&entry["D_s"], Some);
+    let on: Vec<Vec<f64>> = list(entry, "on").iter().map(numbers).collect();
+    let held = |pair: Pair| on.contains(&vec![pair.output as f64, pair.input as f64]);
+    let constrained = PairTable::from_fn(delta.outputs(), delta.inputs(), held);
+    let bounds = Bounds { lower: number(&entry["lower_s"]), upper: number(&entry["upper_s"]) };
+    let fitted = table(&entry["weight"], |weight| weight != 0.0);
+    Problem { alpha: number(&entry["alpha"]), fitted, ..Problem::signed_delays(delta, constrained, bounds) }
+}
+
+#[test]
+fn filters_have_the_reference_response_band_delay_and_gain_at_infinity() {
+    for entry in list(&reference(), "filters") {
+        let (design, lead_s) = (design(entry), number(&entry["lead_s"]));
+        let filter = design.filter_of(lead_s);
+        let [omega, re, im] = ["omega", "re", "im"].map(|name| numbers(&entry[name]));
+        for (at, omega) in omega.iter().enumerate() {
+            let value = filter.at(*omega);
+            // The reference is written to twelve digits.
+            assert!((value.re - re[at]).abs() + (value.im - im[at]).abs() < 1e-10 * value.norm(), "{entry}");
+        }
+        assert_seconds("band delay", design.band_delay_s(lead_s), number(&entry["band_delay_s"]));
+        assert!((filter.gain_at_infinity() / number(&entry["gain_at_infinity"]) - 1.0).abs() < 1e-10);
+    }
+}
+
+#[test]
+fn a_signed_delay_has_the_reference_lead_time() {
+    for entry in list(&reference(), "lead_time") {
+        assert_seconds("lead time", design(entry).lead_s(number(&entry["tau_s"])), number(&entry["lead_s"]));
+    }
+}
+
+#[test]
+fn a_servo_that_lags_wants_one_filter_that_takes_its_place() {
+    let servo = &reference()["servo"];
+    let entry = serde_json::json!({"order": 2, "pole": 3.0});
+    let filter = design(&entry).filter(number(&servo["D_s"])).unwrap();
+    assert_seconds("lead", filter.lead_s(), number(&servo["lead_s"]));
+    assert!((filter.zero_rad_s() - 22.0).abs() < 1e-6 && (filter.lag_rad_s() - 36.0).abs() < 1e-12);
+}
+
+#[test]
+fn every_program_of_signed_delays_has_the_reference_answer() {
+    for entry in list(&reference(), "programs") {
+        let (name, solution) = (entry["name"].as_str().unwrap(), solved(&program(entry)));
+        assert_eq!(solution.matched, entry["matched"].as_bool().unwrap(), "{name}");
+        assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "{name}");
+        assert!((solution.objective / number(&entry["objective"]) - 1.0).abs() < 1e-6, "{name}");
+        for (found, reference) in [(&solution.inputs, &entry["tau_in_s"]), (&solution.outputs, &entry["tau_out_s"])] {
+            for (found, reference) in found.iter().zip(numbers(reference)) {
+                // The reference's limit of alpha is a small alpha, with the rounding that this brings.
+                assert_within(name, *found, reference, if number(&entry["alpha"]) == 0.0 { 5e-9 } else { 1e-9 });
+            }
+        }
+    }
+}
+
+#[test]
+fn the_residual_of_karush_kuhn_and_tucker_proves_each_optimum() {
+    for entry in list(&reference(), "programs") {
+        let problem = program(entry);
+        let mut solution = solved(&problem);
+        // Roundings of slopes that are sums of thirty delays of a tenth of a second.
+        assert!(kkt_residual(&problem, &solution) < 1e-14, "{}", entry["name"]);
+        solution.inputs.iter_mut().for_each(|tau| *tau += 1e-3);
+        solution.outputs.iter_mut().for_each(|tau| *tau -= 1e-3);
+        assert!(problem.alpha == 0.0 || kkt_residual(&problem, &solution) > 1e-3, "moved away from the optimum");
+    }
+}
+
+#[test]
+fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
+    let entry = list(&reference(), "programs").iter().find(|entry| entry["name"] == "one pair beyond reach").cloned();
+    let problem = program(&entry.unwrap());
+    let solution = solved(&problem);
+    let least = solution.inputs.iter().chain(&solution.outputs).copied().fold(f64::INFINITY, f64::min);
+    assert_eq!(least, problem.bounds.lower);
+    let names = |letter: &str, count: usize| (0..count).map(|at| format!("{letter}{at}")).collect::<Vec<_>>();
+    let (inputs, outputs) = (names("u", 4), names("y", 6));
+    let told = solution.unmatched[0].words(12.0, &inputs, &outputs) + &solution.conflicts[0].words(&inputs, &outputs);
+    for part in ["of lead it wants", "R_max lets", "191.2 ms of lead together", "a larger R_max or a smaller n"] {
+        assert!(told.contains(part), "{told}");
+    }
+    let upper = solution.remedy.unwrap();
+    assert!(upper.lower.unwrap() < problem.bounds.lower, "a lower bound further down would do");
+}
+
+fn signed_delays() -> impl Strategy<Value = (Problem, Vec<usize>, Vec<usize>)> {
+    let table = (prop::collection::vec(-0.15_f64..0.1, 12), prop::collection::vec(any::<bool>(), 12), 0.0_f64..0.05);
+    let orders =
+        (Just((0..4).collect::<Vec<usize>>()).prop_shuffle(), Just((0..3).collect::<Vec<usize>>()).prop_shuffle());
+    (table, orders).prop_map(|((delta, held, upper), (outputs, inputs))| {
+        let at = |pair: Pair| pair.output * 3 + pair.input;
+        let held = PairTable::from_fn(4, 3, |pair| held[at(pair)] && (pair.output + pair.input) % 3 == 0);
+        let bounds = Bounds { lower: -0.0956, upper };
+        let delta = PairTable::from_fn(4, 3, |pair| Some(delta[at(pair)]));
+        (Problem::signed_delays(delta, held, bounds), outputs, inputs)
+    })
+}
+
+proptest! {
+    #[test]
+    fn permuting_the_channels_permutes_the_signed_delays((problem, outputs, inputs) in signed_delays()) {
+        let moved = |pair: Pair| Pair::new(outputs[pair.output], inputs[pair.input]);
+        let permuted = Problem {
+            delta: PairTable::from_fn(4, 3, |pair| problem.delta[moved(pair)]),
+            constrained: PairTable::from_fn(4, 3, |pair| problem.constrained[moved(pair)]),
+            ..problem.clone()
+        };
+        let plain = solve(&problem, ProofBudget::default(), &|| false).unwrap();
+        let permuted = solve(&permuted, ProofBudget::default(), &|| false).unwrap();
+        // Strictly convex: the same point, up to what Newton's last step rounds.
+        for (place, &output) in outputs.iter().enumerate() {
+            prop_assert!((permuted.outputs[place] - plain.outputs[output]).abs() < 1e-12);
+        }
+        for (place, &input) in inputs.iter().enumerate() {
+            prop_assert!((permuted.inputs[place] - plain.inputs[input]).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn filters_in_series_add_up_in_band_delay(first_s in 0.0_f64..0.08, second_s in 0.0_f64..0.08) {
+        let entry = serde_json::json!({"order": 2, "pole": 3.0});
+        let design = design(&entry);
+        let [first, second] = [first_s, second_s].map(|lead_s| design.filter_of(lead_s));
+        let omega = design.omega();
+        let moment: f64 = omega.iter().map(|&omega| omega * (first.at(omega) * second.at(omega)).arg()).sum();
+        let series_s = -moment / omega.iter().map(|omega| omega * omega).sum::<f64>();
+        // While the two together turn the phase by less than half a turn, the principal value is the phase.
+        let turn = first.phase(12.0) + second.phase(12.0);
+        prop_assume!(turn < 3.1);
+        prop_assert!((series_s - design.band_delay_s(first_s) - design.band_delay_s(second_s)).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,228 @@
+//! The channels of a correction: which there are, what they are called, something of each; and one gain and one delay or lead for each
+//! (M10, M11, M15), with what they make of a response.
+
+use std::ops::Index;
+
+use super::ChannelLeads;
+use gdcm_model::dataset::{Dataset, Pair};
+use gdcm_model::response::{GainDelay, LeadFilter};
+
+/// One channel: an input or an output, each with a gain and a delay of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Channel {
+    /// The input of this index.
+    Input(usize),
+    /// The output of this index.
+    Output(usize),
+}
+
+impl Channel {
+    /// All inputs, then all outputs.
+    pub fn all(inputs: usize, outputs: usize) -> impl Iterator<Item = Self> {
+        (0..inputs).map(Self::Input).chain((0..outputs).map(Self::Output))
+    }
+
+    /// The output and the input of a response.
+    pub fn of(pair: Pair) -> [Self; 2] {
+        [Self::Output(pair.output), Self::Input(pair.input)]
+    }
+
+    /// Whether a response goes through the channel.
+    pub fn is_of(self, pair: Pair) -> bool {
+        Self::of(pair).contains(&self)
+    }
+
+    /// The channel's name, or its number (from 1) where the list of names is too short.
+    pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
+        let (names, index, kind) = match self {
+            Channel::Input(index) => (inputs, index, "input"),
+            Channel::Output(index) => (outputs, index, "output"),
+        };
+        names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
+    }
+
+    /// All channels of a dataset, the inputs first.
+    pub fn all_of(dataset: &Dataset) -> impl Iterator<Item = Self> + use<> {
+        Self::all(dataset.inputs().len(), dataset.outputs().len())
+    }
+
+    /// The channel's name in a dataset.
+    pub fn name_in(self, dataset: &Dataset) -> String {
+        let (inputs, outputs) = dataset.names_of_channels();
+        self.name(&inputs, &outputs)
+    }
+}
+
+/// The response in words: "PED → NY".
+pub fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
+    let [output, input] = Channel::of(pair).map(|channel| channel.name(inputs, outputs));
+    format!("{input} → {output}")
+}
+
+/// Several responses in words: "A, B and C".
+pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
+    let names: Vec<String> = pairs.iter().map(|&pair| pair_name(pair, inputs, outputs)).collect();
+    match names.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        Some((last, _)) => last.clone(),
+        None => String::new(),
+    }
+}
+
+/// Something of each channel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Channels<T> {
+    /// Of each input, m values.
+    pub inputs: Vec<T>,
+    /// Of each output, p values.
+    pub outputs: Vec<T>,
+}
+
+impl<T> Channels<T> {
+    /// What `of` says of each channel, the inputs first.
+    pub fn from_fn(inputs: usize, outputs: usize, of: impl FnMut(Channel) -> T) -> Self {
+        Self::split(Channel::all(inputs, outputs).map(of).collect(), inputs)
+    }
+
+    /// `all` is of the inputs, then of the outputs.
+    fn split(mut all: Vec<T>, inputs: usize) -> Self {
+        let outputs = all.split_off(inputs);
+        Self { inputs: all, outputs }
+    }
+
+    /// What `of` makes of each channel's.
+    pub fn map<U>(&self, mut of: impl FnMut(Channel, &T) -> U) -> Channels<U> {
+        Channels::split(self.iter().map(|(channel, value)| of(channel, value)).collect(), self.inputs.len())
+    }
+
+    /// As [`Channels::map`], up to the first that fails.
+    pub fn try_map<U, E>(&self, mut of: impl FnMut(Channel, &T) -> Result<U, E>) -> Result<Channels<U>, E> {
+        let all = self.iter().map(|(channel, value)| of(channel, value)).collect::<Result<Vec<U>, E>>()?;
+        Ok(Channels::split(all, self.inputs.len()))
+    }
+
+    /// What a channel has; none where there is no such channel.
+    pub fn get(&self, channel: Channel) -> Option<&T> {
+        match channel {
+            Channel::Input(input) => self.inputs.get(input),
+            Channel::Output(output) => self.outputs.get(output),
+        }
+    }
+
+    /// Each channel with what it has, the inputs first.
+    pub fn iter(&self) -> impl Iterator<Item = (Channel, &T)> {
+        Channel::all(self.inputs.len(), self.outputs.len()).zip(self.inputs.iter().chain(&self.outputs))
+    }
+}
+
+impl<T> Index<Channel> for Channels<T> {
+    type Output = T;
+
+    fn index(&self, channel: Channel) -> &T {
+        match channel {
+            Channel::Input(input) => &self.inputs[input],
+            Channel::Output(output) => &self.outputs[output],
+        }
+    }
+}
+
+/// The correction `M_O H M_I`, each channel `k e^(-tau s)`, eq. (12), or `k L(s)` (M15).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelCorrection {
+    /// Gain of each input channel, m values.
+    pub input_gains: Vec<f64>,
+    /// Gain of each output channel, p values.
+    pub output_gains: Vec<f64>,
+    /// Delay of each input channel \[s\], m values.
+    pub input_delays_s: Vec<f64>,
+    /// Delay of each output channel \[s\], p values.
+    pub output_delays_s: Vec<f64>,
+    /// Signed delays, of which the delays above are the positive part, and the filters of the negative ones; none where leads are
+    /// not asked for (M15).
+    pub leads: Option<ChannelLeads>,
+}
+
+impl ChannelCorrection {
+    /// These gains with these delays \[s\].
+    pub fn of_delays(gains: Channels<f64>, delays_s: Channels<f64>) -> Self {
+        Self {
+            input_gains: gains.inputs,
+            output_gains: gains.outputs,
+            input_delays_s: delays_s.inputs,
+            output_delays_s: delays_s.outputs,
+            leads: None,
+        }
+    }
+
+    /// These gains with signed delays (M15).
+    pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
+        let delays_s = leads.delays_s();
+        Self { leads: Some(leads), ..Self::of_delays(gains, delays_s) }
+    }
+
+    /// Net gain of a response, `k_o k_i` (M11).
+    pub fn net_gain(&self, pair: Pair) -> f64 {
+        self.output_gains[pair.output] * self.input_gains[pair.input]
+    }
+
+    /// Net delay of a response, `tau_o + tau_i` \[s\]; a negative one is a lead (M15).
+    pub fn net_delay_s(&self, pair: Pair) -> f64 {
+        let [output_s, input_s] = Channel::of(pair).map(|channel| self.delay_s(channel));
+        output_s + input_s
+    }
+
+    /// Gain of a channel.
+    pub fn gain(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_gains[input],
+            Channel::Output(output) => self.output_gains[output],
+        }
+    }
+
+    /// Delay of a channel \[s\]; a negative one is a lead (M15).
+    pub fn delay_s(&self, channel: Channel) -> f64 {
+        self.leads.as_ref().map_or_else(|| self.pure_delay_s(channel), |leads| leads.taus_s[channel])
+    }
+
+    /// Delay of a channel without its lead \[s\].
+    pub fn pure_delay_s(&self, channel: Channel) -> f64 {
+        match channel {
+            Channel::Input(input) => self.input_delays_s[input],
+            Channel::Output(output) => self.output_delays_s[output],
+        }
+    }
+
+    /// Delay of each channel \[s\]; a negative one is a lead (M15).
+    pub fn signed_delays_s(&self) -> Channels<f64> {
+        self.channels(|channel| self.delay_s(channel))
+    }
+
+    /// What `of` says of each channel.
+    pub fn channels<T>(&self, of: impl FnMut(Channel) -> T) -> Channels<T> {
+        Channels::from_fn(self.input_gains.len(), self.output_gains.len(), of)
+    }
+
+    /// The lead filter of a channel, where it has one (M15).
+    pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
+        self.leads.as_ref()?.filters()[channel]
+    }
+
+    /// The same without its lead filters: its gains and what is positive of its delays.
+    pub fn without_leads(self) -> Self {
+        Self { leads: None, ..self }
+    }
+
+    /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give
+    /// that).
+    pub fn on(&self, pair: Pair) -> Option<GainDelay> {
+        let leads = Channel::of(pair).map(|channel| self.lead(channel));
+        Some(self.without_leads_on(pair)?.led(leads))
+    }
+
+    /// As [`ChannelCorrection::on`], without the lead filters: what is left to do where those have done their part.
+    pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
+        let gain = self.net_gain(pair);
+        let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];
+        (gain > 0.0).then(|| GainDelay::new(gain, delay_s))
+    }
+}

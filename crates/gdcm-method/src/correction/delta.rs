@@ -1,0 +1,139 @@
+//! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
+//! spread over the band gives to the channels (M7).
+
+use serde::{Deserialize, Serialize};
+
+use super::GainBounds;
+use crate::fidelity::{CoherenceWeights, Mismatch};
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::{PolarResponse, quantile};
+use gdcm_model::units::db_to_ratio;
+
+/// Which models G is taken from; D is always that of the representatives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum GainSource {
+    /// The two representatives (the paper).
+    #[default]
+    #[serde(rename = "representatives")]
+    Representatives,
+    /// Every pair of a kept physics and a kept identified model: `G = exp(mean of ln G)`.
+    #[serde(rename = "mean")]
+    MeanOfPairs,
+}
+
+impl GainSource {
+    /// "the representatives", "the mean over all kept pairs".
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Representatives => "the representatives",
+            Self::MeanOfPairs => "the mean over all kept pairs",
+        }
+    }
+}
+
+/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6), and its band delay (M15.2).
+///
+/// `None` where the ratio is zero or not finite at some frequency, or where none counts. The medians are weighted where the
+/// reference is measured with coherence (M4a).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Delta {
+    /// G, `[output, input]`, dimensionless.
+    pub gain: PairTable<Option<f64>>,
+    /// D, `[output, input]` \[s\]; positive where the physics model leads, so that delay must be added.
+    pub delay_s: PairTable<Option<f64>>,
+    /// Band delay, `[output, input]` \[s\]: the straight line of least squares through the missing phase (M15.2).
+    pub band_delay_s: PairTable<Option<f64>>,
+}
+
+impl Delta {
+    /// G and D of the mismatch of two representatives.
+    pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
+        let phases = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
+        let of_each = |value: fn(&Mismatch, &[f64], &[f64]) -> f64| {
+            mismatch.map(|pair, entry| {
+                let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
+                Some(value(entry, phase, entry.omega(omega)))
+            })
+        };
+        Self {
+            gain: delta_gains(mismatch),
+            delay_s: of_each(|entry, phase, omega| entry.median(&mut delays(phase, omega))),
+            band_delay_s: of_each(|entry, phase, omega| band_delay_s(phase.iter().copied(), omega, entry.weights())),
+        }
+    }
+}
+
+/// `G = median |H_ref| / |H_sim|` of every response (M6).
+pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f64>> {
+    mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))))
+}
+
+/// `sum W omega phase / sum W omega^2` \[s\] of a phase \[rad\] at each frequency \[rad/s\]: the delay that leaves the least phase in
+/// the mean of squares (M15.2). Linear in the phase; W = 1 where there are no weights.
+pub(crate) fn band_delay_s(phase: impl Iterator<Item = f64>, omega: &[f64], weights: Option<&[f64]>) -> f64 {
+    let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
+    let (mut moment, mut square) = (0.0, 0.0);
+    for (place, (phase, omega)) in phase.zip(omega).enumerate() {
+        moment += weight(place) * omega * phase;
+        square += weight(place) * omega * omega;
+    }
+    moment / square
+}
+
+/// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
+pub const LARGEST_GAIN_DB: f64 = 1000.0;
+
+/// The mismatch of every response that both models have and whose ratio is finite and not zero, at the frequencies that count:
+/// all where `counted` is none (M4a).
+pub fn mismatch_table(
+    simulated: &PolarResponse,
+    reference: &PolarResponse,
+    coherence_weights: Option<&PairTable<CoherenceWeights>>,
+) -> PairTable<Option<Mismatch>> {
+    simulated.curves().map(|pair, simulated| {
+        let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
+        let mismatch =
+            mismatch.coherence_weighted(coherence_weights.map(|coherence_weights| &coherence_weights[pair]))?;
+        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_GAIN_DB).then_some(mismatch)
+    })
+}
+
+/// `|H_ref| / |H_sim|` at each frequency.
+fn ratios(mismatch: &Mismatch) -> Vec<f64> {
+    mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
+}
+
+/// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
+fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
+    phase.iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+}
+
+/// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.
+fn pooled<'a>(
+    mismatch: &'a PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
+    let marked: Vec<Pair> = measuring.marked().filter(|&pair| mismatch[pair].is_some()).collect();
+    let pairs = if marked.is_empty() { mismatch.pairs().collect() } else { marked };
+    pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
+}
+
+/// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over frequency and pairs.
+pub fn gain_bounds(mismatch: &PairTable<Option<Mismatch>>, measuring: &PairTable<bool>, q: f64) -> GainBounds {
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
+    let lower = quantile(&mut pool, q).min(1.0);
+    let upper = quantile(&mut pool, 1.0 - q).max(1.0);
+    GainBounds { lower, upper }
+}
+
+/// `UB = max(0, (1-q)-quantile)` \[s\] of `Delta phi / omega` pooled over frequency and pairs.
+pub fn delay_upper_s(
+    mismatch: &PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+    omega: &[f64],
+    q: f64,
+) -> f64 {
+    let of = |mismatch: &Mismatch| delays(&mismatch.phase_difference(omega), mismatch.omega(omega));
+    let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(of).collect();
+    quantile(&mut pool, 1.0 - q).max(0.0)
+}

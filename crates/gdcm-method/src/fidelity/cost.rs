@@ -1,0 +1,195 @@
+//! The cost J of a mismatch between two responses, eq. (14)-(19).
+
+use std::f64::consts::{PI, TAU};
+
+use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::response::{PolarCurve, mean, median, weighted_median};
+
+/// Weight of the squared magnitude error \[dB^2\], `W_g`.
+const MAGNITUDE_WEIGHT: f64 = 1.0;
+/// Weight of the squared phase error \[deg^2\], `W_p`.
+const PHASE_WEIGHT: f64 = 0.0175;
+/// J up to which a model is acceptable.
+pub const ACCEPTABLE: f64 = 100.0;
+
+/// Factor before both parts of J.
+const COST_SCALE: f64 = 20.0;
+
+/// What J averages over frequency, at one of them: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
+pub fn summand(error_db: f64, error_deg: f64) -> f64 {
+    COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
+}
+
+/// How squared errors are averaged over frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CostAverage {
+    /// The median (the paper).
+    Median,
+    /// The mean (Tischler's original).
+    Mean,
+}
+
+impl CostAverage {
+    fn of(self, squares: &mut [f64], weights: Option<&[f64]>) -> f64 {
+        match (self, weights) {
+            (CostAverage::Median, None) => median(squares),
+            (CostAverage::Mean, None) => mean(squares),
+            (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
+            // Over the number of frequencies, not over the sum of weights: Tischler's form.
+            (CostAverage::Mean, Some(weights)) => {
+                squares.iter_mut().zip(weights).for_each(|(square, weight)| *square *= weight);
+                mean(squares)
+            }
+        }
+    }
+}
+
+/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is a weighted one (M4a).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// `J_mag = 20 W_g average(e_dB^2)`.
+    pub magnitude: f64,
+    /// `J_phase = 20 W_p average(e_deg^2)`.
+    pub phase: f64,
+}
+
+impl Cost {
+    /// J of the magnitude errors \[dB\] and the phase errors \[rad\], one of each for each frequency; `weights` likewise, where
+    /// not all frequencies count alike.
+    ///
+    /// `scratch` is overwritten.
+    pub fn of(
+        magnitude_error_db: impl Iterator<Item = f64>,
+        phase_error: impl Iterator<Item = f64>,
+        weights: Option<&[f64]>,
+        average: CostAverage,
+        scratch: &mut Vec<f64>,
+    ) -> Self {
+        scratch.clear();
+        scratch.extend(magnitude_error_db.map(|error| error * error));
+        let magnitude = COST_SCALE * MAGNITUDE_WEIGHT * average.of(scratch, weights);
+        scratch.clear();
+        scratch.extend(phase_error.map(f64::to_degrees).map(|error| error * error));
+        let phase = COST_SCALE * PHASE_WEIGHT * average.of(scratch, weights);
+        Self { magnitude, phase }
+    }
+
+    /// What the averages of the squared errors are multiplied by, `20 W_g` and `20 W_p`, in words.
+    pub fn factors() -> [String; 2] {
+        [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
+    }
+
+    /// The averages of the squared errors \[dB^2, deg^2\].
+    pub fn averages(self) -> [f64; 2] {
+        [self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT), self.phase / (COST_SCALE * PHASE_WEIGHT)]
+    }
+
+    /// `J = J_mag + J_phase`.
+    pub fn total(self) -> f64 {
+        self.magnitude + self.phase
+    }
+}
+
+/// J of `simulated` against `reference`, on the same frequencies:
+/// `J = 20 / N sum_k (W_g e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
+///
+/// It is [`super::Mismatch::cost`] with the mean, without gain or delay: distances within a bundle of `n` models take
+/// `n (n - 1) / 2` of these for each response, and a dozen operations for each frequency.
+pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
+    let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences { simulated, reference });
+    let squared_degrees = 180.0 / PI * 180.0 / PI * phase;
+    COST_SCALE / simulated.phase.len() as f64 * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
+}
+
+/// The sums over the frequencies of the squared differences of two curves, as many frequencies at once as the processor's
+/// vectors hold: of the magnitudes \[dB^2\], and of the principal values of the phases \[rad^2\].
+struct SquaredDifferences<'a> {
+    simulated: &'a PolarCurve,
+    reference: &'a PolarCurve,
+}
+
+impl WithSimd for SquaredDifferences<'_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+        let [mut magnitude, mut phase] = [simd.splat_f64s(0.0); 2];
+        let Self { simulated, reference } = self;
+        for (a, b) in simulated.magnitude_db.chunks(S::F64_LANES).zip(reference.magnitude_db.chunks(S::F64_LANES)) {
+            let error = simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b));
+            magnitude = simd.mul_add_e_f64s(error, error, magnitude);
+        }
+        for (a, b) in simulated.phase.chunks(S::F64_LANES).zip(reference.phase.chunks(S::F64_LANES)) {
+            // Lanes past the end hold zero, which adds nothing.
+            let error = principal(simd, simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b)));
+            phase = simd.mul_add_e_f64s(error, error, phase);
+        }
+        [simd.reduce_sum_f64s(magnitude), simd.reduce_sum_f64s(phase)]
+    }
+}
+
+/// The principal value in (-pi, pi] of a difference of two.
+#[inline(always)]
+fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
+    let (turn, zero) = (simd.splat_f64s(TAU), simd.splat_f64s(0.0));
+    let above = simd.greater_than_f64s(difference, simd.splat_f64s(PI));
+    let below = simd.less_than_or_equal_f64s(difference, simd.splat_f64s(-PI));
+    let less = simd.sub_f64s(difference, simd.select_f64s(above, turn, zero));
+    simd.add_f64s(less, simd.select_f64s(below, turn, zero))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_error_has_the_cost_of_the_definition() {
+        let cost = Cost::of([2.0; 5].into_iter(), [0.1; 5].into_iter(), None, CostAverage::Median, &mut Vec::new());
+        assert_eq!(cost.magnitude, 80.0);
+        // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
+        assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
+        let error = || [1.0, 1.0, 10.0].into_iter();
+        let none = || [0.0; 3].into_iter();
+        assert_eq!(Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(), 20.0);
+        assert_eq!(Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(), 680.0);
+    }
+
+    #[test]
+    fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
+        let cost = |average| {
+            let (magnitude, phase) = ([1.0, 3.0, 2.0].into_iter(), [0.0; 3].into_iter());
+            Cost::of(magnitude, phase, Some(&[0.5, 1.0, 0.25]), average, &mut Vec::new()).total()
+        };
+        // 20 / 3 (0.5 + 9 + 1); half of the weight of 1.75 is passed at the last of the squares 1, 4, 9.
+        assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
+        assert_eq!(cost(CostAverage::Median), 180.0);
+    }
+}
+
+#[cfg(test)]
+mod mean_cost_tests {
+    use super::*;
+    use crate::fidelity::{CostAverage, Mismatch};
+    use gdcm_model::response::{GainDelay, wrap};
+
+    #[test]
+    fn it_is_the_cost_of_the_mismatch_with_the_mean() {
+        let curve = |seed: f64| PolarCurve {
+            magnitude_db: (0..53).map(|k| 20.0 * (seed + 0.3 * f64::from(k)).sin()).collect(),
+            phase: (0..53).map(|k| wrap(seed - 0.4 * seed * f64::from(k))).collect(),
+        };
+        for (a, b) in [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b))) {
+            let expected = Mismatch::new(&a, &b).cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean).total();
+            let found = mean_cost(&a, &b);
+            // The same sums of 53 squares in another order.
+            assert!((found - expected).abs() <= 1e-13 * expected, "{found} {expected}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Envelopes of maximum unnoticeable added dynamics: what a pilot does not notice (MIL-STD-1797A, appendix A, 4.2.1.2).
+//!
+//! Dynamics added to an aircraft's response go unnoticed while magnitude and phase of the added factor stay inside
+//!
+//! ```text
+//! upper magnitude  (3.16 s^2 + 31.61 s + 22.79) / (s^2 + 27.14 s + 1.84)
+//! lower magnitude  (0.0955 s^2 + 9.92 s + 2.15) / (s^2 + 11.6 s + 4.96)
+//! upper phase      (68.89 s^2 + 1100.12 s - 275.22) / (s^2 + 39.94 s + 9.99) e^(0.0059 s)
+//! lower phase      (475.32 s^2 + 184100 s + 29456.1) / (s^2 + 11.66 s + 0.0389) e^(-0.0072 s)
+//! ```
+//!
+//! Wood & Hodgkinson, "Definition of acceptable levels of mismatch for equivalent systems of augmented CTOL aircraft", MDC
+//! A6792, 1980. Some codes leave out the delays or round the coefficients (0.095, 4.95, 29460, 0.039): differences below 0.02 dB
+//! and 0.005 deg, and the delays.
+
+use nalgebra::Complex;
+
+use gdcm_model::units::ratio_to_db;
+
+/// A ratio of two polynomials of degree 2, highest power first, and a delay \[s\].
+struct Factor {
+    numerator: [f64; 3],
+    denominator: [f64; 3],
+    delay_s: f64,
+}
+
+const UPPER_MAGNITUDE: Factor =
+    Factor { numerator: [3.16, 31.61, 22.79], denominator: [1.0, 27.14, 1.84], delay_s: 0.0 };
+const LOWER_MAGNITUDE: Factor =
+    Factor { numerator: [0.0955, 9.92, 2.15], denominator: [1.0, 11.6, 4.96], delay_s: 0.0 };
+const UPPER_PHASE: Factor =
+    Factor { numerator: [68.89, 1100.12, -275.22], denominator: [1.0, 39.94, 9.99], delay_s: -0.0059 };
+const LOWER_PHASE: Factor =
+    Factor { numerator: [475.32, 184_100.0, 29_456.1], denominator: [1.0, 11.66, 0.0389], delay_s: 0.0072 };
+
+impl Factor {
+    fn ratio(&self, omega: f64) -> Complex<f64> {
+        let s = Complex::new(0.0, omega);
+        let at = |[two, one, zero]: [f64; 3]| (s * two + one) * s + zero;
+        at(self.numerator) / at(self.denominator)
+    }
+
+    fn magnitude_db(&self, omega: f64) -> f64 {
+        ratio_to_db(self.ratio(omega).norm())
+    }
+
+    /// The delay turns by a few degrees, the ratio by less than half a turn: the principal value is the phase.
+    fn phase_deg(&self, omega: f64) -> f64 {
+        (self.ratio(omega).arg() - omega * self.delay_s).to_degrees()
+    }
+}
+
+/// The envelopes at one frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Muad {
+    /// Least and greatest magnitude of the added dynamics \[dB\].
+    pub magnitude_db: [f64; 2],
+    /// Least and greatest phase of the added dynamics \[deg\].
+    pub phase_deg: [f64; 2],
+}
+
+impl Muad {
+    /// The envelopes at `omega` \[rad/s\], greater than zero. They come from trials between 0.1 and some 10 rad/s.
+    pub fn at(omega: f64) -> Self {
+        Self {
+            magnitude_db: [LOWER_MAGNITUDE.magnitude_db(omega), UPPER_MAGNITUDE.magnitude_db(omega)],
+            phase_deg: [LOWER_PHASE.phase_deg(omega), UPPER_PHASE.phase_deg(omega)],
+        }
+    }
+
+    /// How far an error is outside \[dB and deg\], negative inside: the distance to the nearer envelope.
+    fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
+        let beyond = |[least, most]: [f64; 2], error: f64| (least - error).max(error - most);
+        [beyond(self.magnitude_db, error_db), beyond(self.phase_deg, error_deg)]
+    }
+}
+
+/// Where a mismatch, model over reference, leaves an envelope: ranges of `omega` \[rad/s\], rising and apart.
+///
+/// The errors \[dB\] and \[deg\] stand at the rising frequencies `omega`; the phase error is its value near zero. Between two
+/// frequencies the distance from the envelope is linear in `ln omega`.
+pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
+    let errors = error_db.iter().zip(error_deg);
+    let outside: Vec<[f64; 2]> =
+        omega.iter().zip(errors).map(|(&omega, (&db, &deg))| Muad::at(omega).outside(db, deg)).collect();
+    let mut ranges: Vec<(f64, f64)> = (0..2)
+        .flat_map(|part| ranges_above_zero(omega, &outside.iter().map(|outside| outside[part]).collect::<Vec<_>>()))
+        .collect();
+    ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut merged: Vec<(f64, f64)> = Vec::new();
+    for range in ranges {
+        match merged.last_mut() {
+            Some(last) if range.0 <= last.1 => last.1 = last.1.max(range.1),
+            _ => merged.push(range),
+        }
+    }
+    merged
+}
+
+fn ranges_above_zero(omega: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
+    let mut ranges = Vec::new();
+    let mut begun = None;
+    for k in 0..values.len() {
+        let crossing = |k: usize| {
+            let share = values[k - 1] / (values[k - 1] - values[k]);
+            omega[k - 1] * (omega[k] / omega[k - 1]).powf(share)
+        };
+        match (begun, values[k] > 0.0) {
+            (None, true) => begun = Some(if k == 0 { omega[0] } else { crossing(k) }),
+            (Some(start), false) => {
+                ranges.push((start, crossing(k)));
+                begun = None;
+            }
+            _ => {}
+        }
+    }
+    ranges.extend(begun.zip(omega.last()).map(|(start, &end)| (start, end)));
+    ranges
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_that_stays_inside_leaves_nowhere() {
+        let omega: Vec<f64> = (1..=100).map(|k| 0.1 * f64::from(k)).collect();
+        assert_eq!(leaves(&omega, &[0.0; 100], &[0.0; 100]), []);
+    }
+
+    #[test]
+    fn a_constant_error_leaves_where_the_envelope_is_narrower() {
+        // 2 dB: the upper magnitude is 2.74 dB at 1 rad/s, 1.31 at 3 and 2.39 at 7.
+        let omega: Vec<f64> = (0..=200).map(|k| 10.0_f64.powf(-1.0 + 0.01 * f64::from(k))).collect();
+        let ranges = leaves(&omega, &[2.0; 201], &[0.0; 201]);
+        assert_eq!(ranges.len(), 1);
+        for end in [ranges[0].0, ranges[0].1] {
+            // The envelope turns by some 1e-4 dB from linear between two frequencies.
+            assert!((Muad::at(end).magnitude_db[1] - 2.0).abs() < 1e-3, "{ranges:?}");
+        }
+        assert!((1.0..3.0).contains(&ranges[0].0) && (3.0..7.0).contains(&ranges[0].1));
+    }
+
+    #[test]
+    fn ranges_of_magnitude_and_phase_are_told_as_one_where_they_meet() {
+        let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
+        let ranges = leaves(&omega, &[9.0, 9.0, 0.0, 0.0, 0.0], &[0.0, 0.0, -90.0, -90.0, 0.0]);
+        assert_eq!((ranges.len(), ranges[0].0), (1, 1.0), "{ranges:?}");
+        assert!((4.0..5.0).contains(&ranges[0].1));
+        let to_the_end = leaves(&omega, &[0.0; 5], &[0.0, 0.0, 0.0, 0.0, 60.0]);
+        assert_eq!((to_the_end.len(), to_the_end[0].1), (1, 5.0));
+    }
+}

@@ -1,0 +1,160 @@
+//! Boundaries of handling-qualities levels over bandwidth and phase delay, from the engineer's file (M17.1).
+//!
+//! None is built in: they depend on the mission task element and the category (ADS-33E-PRF, figures 5, 6, 11 and 12).
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::message_text::quoted;
+use gdcm_model::units::number;
+
+/// One boundary: a line of points in the plane of bandwidth and phase delay.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LevelBoundary {
+    /// Its name ("Level 1").
+    pub name: String,
+    /// The output that it is drawn for ("P").
+    pub axis: String,
+    /// Bandwidth \[rad/s\] and phase delay \[s\] of each point, in the order in which they are joined; at least two.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`; each is checked as it is read.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<LevelBoundary>")]
+pub struct LevelBoundaries(Vec<LevelBoundary>);
+
+/// Why boundaries cannot be drawn.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LevelBoundaryError {
+    /// A boundary has no name.
+    #[error("boundary {entry}: expected a name, found none")]
+    NoName {
+        /// Which, counted from 1.
+        entry: usize,
+    },
+    /// A boundary has no axis.
+    #[error("boundary {entry}, {}: expected the name of an output as its axis, found none", quoted(name))]
+    NoAxis {
+        /// Which, counted from 1.
+        entry: usize,
+        /// Its name.
+        name: String,
+    },
+    /// A boundary has fewer than two points.
+    #[error("boundary {entry}, {}: expected at least 2 points, found {found}", quoted(name))]
+    TooFewPoints {
+        /// Which, counted from 1.
+        entry: usize,
+        /// Its name.
+        name: String,
+        /// How many it has.
+        found: usize,
+    },
+    /// A point is not finite, or negative.
+    #[error(
+        "boundary {entry}, {}, point {point}: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found {} and {}",
+        quoted(name), number(found[0]), number(found[1])
+    )]
+    Point {
+        /// Which, counted from 1.
+        entry: usize,
+        /// Its name.
+        name: String,
+        /// Which point, counted from 1.
+        point: usize,
+        /// What stands there.
+        found: [f64; 2],
+    },
+}
+
+impl LevelBoundary {
+    fn check(&self, entry: usize) -> Result<(), LevelBoundaryError> {
+        let name = self.name.clone();
+        if name.trim().is_empty() {
+            return Err(LevelBoundaryError::NoName { entry });
+        }
+        if self.axis.trim().is_empty() {
+            return Err(LevelBoundaryError::NoAxis { entry, name });
+        }
+        if self.points.len() < 2 {
+            return Err(LevelBoundaryError::TooFewPoints { entry, name, found: self.points.len() });
+        }
+        let is_wrong = |point: &[f64; 2]| point.iter().any(|value| !value.is_finite() || *value < 0.0);
+        match self.points.iter().position(is_wrong) {
+            Some(at) => Err(LevelBoundaryError::Point { entry, name, point: at + 1, found: self.points[at] }),
+            None => Ok(()),
+        }
+    }
+}
+
+impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
+    type Error = LevelBoundaryError;
+
+    fn try_from(boundaries: Vec<LevelBoundary>) -> Result<Self, LevelBoundaryError> {
+        boundaries.iter().enumerate().try_for_each(|(index, boundary)| boundary.check(index + 1))?;
+        Ok(Self(boundaries))
+    }
+}
+
+impl LevelBoundaries {
+    /// All of them, in the order of the file.
+    pub fn all(&self) -> &[LevelBoundary] {
+        &self.0
+    }
+
+    /// Those of one axis, named as the dataset names its output.
+    pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
+        self.0.iter().filter(move |boundary| boundary.axis == axis)
+    }
+
+    /// Axes of the file that are no outputs of the dataset, each once.
+    pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
+        let mut unknown: Vec<&str> = Vec::new();
+        for boundary in self.0.iter().filter(|boundary| !outputs.contains(&boundary.axis)) {
+            if !unknown.contains(&boundary.axis.as_str()) {
+                unknown.push(&boundary.axis);
+            }
+        }
+        unknown
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<LevelBoundaries, String> {
+        serde_json::from_str(text).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn boundaries_are_read_and_come_back_as_they_were() {
+        let text = r#"[{"name":"Level 1","axis":"P","points":[[2.0,0.0],[2.0,0.15],[3.0,0.25]]},{"name":"Level 1","axis":"Q","points":[[1.0,0.0],[1.0,0.2]]}]"#;
+        let boundaries = read(text).unwrap();
+        assert_eq!(boundaries.all().len(), 2);
+        assert_eq!(boundaries.of_axis("Q").next().unwrap().points[1], [1.0, 0.2]);
+        assert_eq!(boundaries.unknown_axes(&["P".to_owned()]), ["Q"]);
+        assert_eq!(serde_json::to_string(&boundaries).unwrap(), text);
+    }
+
+    #[test]
+    fn a_wrong_boundary_is_refused_with_its_place() {
+        let of = |name: &str, axis: &str, points: &str| {
+            read(&format!(r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#)).unwrap_err()
+        };
+        for (error, words) in [
+            (of(" ", "P", "[[1,0],[1,1]]"), "boundary 1: expected a name"),
+            (of("L", "", "[[1,0],[1,1]]"), "boundary 1, \"L\": expected the name of an output"),
+            (of("L", "P", "[[1,0]]"), "boundary 1, \"L\": expected at least 2 points, found 1"),
+            (
+                of("L", "P", "[[1,0],[1,-0.1]]"),
+                "boundary 1, \"L\", point 2: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found 1 and -0.1",
+            ),
+        ] {
+            assert!(error.starts_with(words), "{error}");
+        }
+        let not_finite = LevelBoundary { name: "L".into(), axis: "P".into(), points: vec![[f64::NAN, 0.0]; 2] };
+        let error = LevelBoundaries::try_from(vec![not_finite]).unwrap_err();
+        assert!(matches!(error, LevelBoundaryError::Point { entry: 1, point: 1, .. }));
+    }
+}

@@ -1,0 +1,217 @@
+//! What the modes of a helicopter are called (M17.3).
+//!
+//! ```text
+//! where states are named: sum the participations of states of a kind
+//!    cyclic flap >= 0.4, an oscillation below 25 rad/s             regressing flap
+//!    u, w, q, theta  more than  v, p, r, phi, psi, and over 0.3:   u, theta more than w, q: phugoid; else oscillation: short period
+//!                                                                  real: q more than w: pitch subsidence, else heave
+//!    v, p, r, phi, psi, over 0.3:                                  oscillation: Dutch roll
+//!                                                                  real: p most: roll subsidence; else, below 1 rad/s: spiral
+//! else by frequency and damping, a guess
+//! ```
+//!
+//! G. D. Padfield, "Helicopter Flight Dynamics", 2nd ed. 2007, 4.3.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::response::Mode;
+
+/// Share of the cyclic flap from which a mode is one of the rotor.
+const FLAP_SHARE: f64 = 0.4;
+/// Share of the fuselage below which a mode is of actuators, sensors or inflow.
+const FUSELAGE_SHARE: f64 = 0.3;
+/// Frequency \[rad/s\] below which a flapping mode is the regressing one.
+const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
+/// Frequency \[rad/s\] below which a real lateral mode without roll rate is the spiral.
+const FASTEST_SPIRAL_RAD_S: f64 = 1.0;
+
+/// The name of a mode.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModeName {
+    /// Slow oscillation of speed and pitch attitude: the long-term response.
+    Phugoid,
+    /// Fast oscillation of pitch rate and incidence.
+    ShortPeriod,
+    /// Subsidence of pitch rate.
+    PitchSubsidence,
+    /// Subsidence of vertical speed.
+    Heave,
+    /// Lateral-directional oscillation.
+    DutchRoll,
+    /// Subsidence of roll rate.
+    RollSubsidence,
+    /// Slow real mode of bank and heading.
+    Spiral,
+    /// Regressing flap of the main rotor.
+    RegressingFlap,
+}
+
+impl fmt::Display for ModeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Phugoid => "phugoid",
+            Self::ShortPeriod => "short period",
+            Self::PitchSubsidence => "pitch subsidence",
+            Self::Heave => "heave",
+            Self::DutchRoll => "Dutch roll",
+            Self::RollSubsidence => "roll subsidence",
+            Self::Spiral => "spiral",
+            Self::RegressingFlap => "regressing flap",
+        })
+    }
+}
+
+/// What a mode is named by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum NamedBy {
+    /// The states that take part in it.
+    States,
+    /// Its frequency and damping alone.
+    Frequency,
+}
+
+/// What a state of a model is of by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): a body axis' usual letter, an attitude, or
+/// "flap" of the cyclic flap; none of any other.
+fn state_kind(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    if lower.contains("flap") {
+        return Some("flap");
+    }
+    let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
+    let word: String = lower[..end].chars().filter(|letter| *letter != '_').collect();
+    Some(match word.trim_end_matches("dot") {
+        "u" | "ub" | "vx" => "u",
+        "v" | "vb" | "vy" | "beta" => "v",
+        "w" | "wb" | "vz" | "alpha" => "w",
+        "p" | "pb" => "p",
+        "q" | "qb" => "q",
+        "r" | "rb" => "r",
+        "phi" | "bank" => "phi",
+        "theta" => "theta",
+        "psi" | "heading" => "psi",
+        "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => "flap",
+        _ => return None,
+    })
+}
+
+impl ModeName {
+    /// The name of a mode of a model: by the states that take part where `states` names them, else by frequency and damping. None
+    /// where that does not say it, or a pole cannot be told from another of named states: actuators of one make are such.
+    pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
+        if states.is_empty() {
+            return (Self::by_frequency(mode), NamedBy::Frequency);
+        }
+        let shares = mode.participation.as_deref().unwrap_or_default();
+        (Self::by_states(mode, shares, states), NamedBy::States)
+    }
+
+    fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
+        let kinds: Vec<Option<&str>> = states.iter().map(|name| state_kind(name)).collect();
+        let share = |of: &[&str]| -> f64 {
+            let is_of = |state: usize| kinds.get(state).copied().flatten().is_some_and(|kind| of.contains(&kind));
+            shares.iter().filter(|(state, _)| is_of(*state)).map(|(_, share)| share).sum()
+        };
+        let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
+        if share(&["flap"]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
+            return Some(Self::RegressingFlap);
+        }
+        let longitudinal = share(&["u", "w", "q", "theta"]);
+        let lateral = share(&["v", "p", "r", "phi", "psi"]);
+        if longitudinal.max(lateral) < FUSELAGE_SHARE {
+            return None;
+        }
+        match (longitudinal > lateral, mode.oscillates()) {
+            // Of two real poles too, into which the oscillation can split.
+            (true, _) if share(&["u", "theta"]) > share(&["w", "q"]) => Some(Self::Phugoid),
+            (true, true) => Some(Self::ShortPeriod),
+            (true, false) if share(&["q"]) > share(&["w"]) => Some(Self::PitchSubsidence),
+            (true, false) => Some(Self::Heave),
+            (false, true) => Some(Self::DutchRoll),
+            (false, false) if share(&["p"]) >= 0.5 * lateral => Some(Self::RollSubsidence),
+            (false, false) => (mode.frequency_rad_s < FASTEST_SPIRAL_RAD_S).then_some(Self::Spiral),
+        }
+    }
+
+    /// By frequency \[rad/s\] and damping alone, as helicopters have them; no more than a guess.
+    fn by_frequency(mode: &Mode) -> Option<Self> {
+        let damping = mode.damping_ratio?;
+        match (mode.oscillates(), mode.frequency_rad_s) {
+            (true, ..0.6) => Some(Self::Phugoid),
+            (true, 0.6..5.0) if damping < 0.4 => Some(Self::DutchRoll),
+            (true, 0.6..5.0) => Some(Self::ShortPeriod),
+            (true, 5.0..FASTEST_REGRESSING_RAD_S) if damping > 0.2 => Some(Self::RegressingFlap),
+            (false, ..0.5) => Some(Self::Spiral),
+            (false, 1.0..10.0) => Some(Self::RollSubsidence),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gdcm_model::dataset::StateSpace;
+    use gdcm_model::response::modes;
+    use nalgebra::{DMatrix, dmatrix};
+
+    fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
+        let n = a.nrows();
+        modes(&StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()).unwrap()
+    }
+
+    fn named(a: DMatrix<f64>, states: &[&str]) -> Vec<(Option<ModeName>, NamedBy)> {
+        let states: Vec<String> = states.iter().map(|name| (*name).to_owned()).collect();
+        modes_of(a).iter().map(|mode| ModeName::of(mode, &states)).collect()
+    }
+
+    #[test]
+    fn modes_are_named_by_the_states_that_take_part() {
+        use ModeName::*;
+        // Blocks that do not touch: a slow pair of u and theta, one of w and q, a lag of p, one of phi.
+        let a = dmatrix![
+            0.0, -0.1, 0.0, 0.0, 0.0, 0.0;
+            0.1, 0.0, 0.0, 0.0, 0.0, 0.0;
+            0.0, 0.0, -1.0, 2.0, 0.0, 0.0;
+            0.0, 0.0, -2.0, -1.0, 0.0, 0.0;
+            0.0, 0.0, 0.0, 0.0, -4.0, 0.0;
+            0.0, 0.0, 0.0, 0.0, 0.0, -0.02];
+        let found = named(a, &["u [m/s]", "theta", "w", "q (rad/s)", "p", "phi"]);
+        let names = [Spiral, Phugoid, Phugoid, ShortPeriod, ShortPeriod, RollSubsidence];
+        assert_eq!(found, names.map(|name| (Some(name), NamedBy::States)));
+    }
+
+    #[test]
+    fn states_of_actuators_leave_a_mode_without_a_name() {
+        let pair = || dmatrix![-16.0, 14.0; -14.0, -16.0];
+        assert_eq!(named(pair(), &["act_lon", "act_lon_dot"])[0], (None, NamedBy::States));
+        // Two of one make cannot be told apart; their frequency says nothing where their states are known.
+        let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
+        assert_eq!(named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0], (None, NamedBy::States));
+        assert_eq!(named(pair() * 0.4, &["b1s", "p"])[0].0, Some(ModeName::RegressingFlap));
+        assert_eq!(named(pair() * 0.1, &["v", "r"])[0].0, Some(ModeName::DutchRoll));
+        assert_eq!(named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0, Some(ModeName::RegressingFlap));
+    }
+
+    #[test]
+    fn without_names_of_states_frequency_and_damping_guess() {
+        use ModeName::*;
+        let lag = |rate: f64| dmatrix![-rate];
+        let pair = |re: f64, im: f64| dmatrix![re, im; -im, re];
+        for (a, name) in [
+            (lag(0.05), Some(Spiral)),
+            (lag(3.0), Some(RollSubsidence)),
+            (lag(40.0), None),
+            (pair(0.02, 0.3), Some(Phugoid)),
+            (pair(-0.4, 2.0), Some(DutchRoll)),
+            (pair(-1.5, 1.5), Some(ShortPeriod)),
+            (pair(-6.0, 5.0), Some(RegressingFlap)),
+            (lag(0.0), None),
+        ] {
+            assert_eq!(named(a.clone(), &[])[0], (name, NamedBy::Frequency), "{a}");
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Which mode of a model corresponds to which flown mode: near in the s-plane and of a like shape over the outputs (M17.3).
+//!
+//! ```text
+//! 1  of a conjugate pair the pole above the real axis: one mode
+//! 2  scale of output i:  s_i^2 = sum_k |r_ki|^2 / max(|lambda_k|, omega_min)^2 over the flown modes,  r_k = (C v_k) |w_k B|
+//! 3  distance  d = |lambda - lambda'| / max(|lambda|, |lambda'|, omega_min)
+//!    likeness  c = |sum_i r_i* r'_i / s_i^2|^2 / (sum_i |r_i|^2 / s_i^2  sum_i |r'_i|^2 / s_i^2)
+//! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is least, an unpaired flown mode counting 1
+//! ```
+//!
+//! `omega_min` is the lower end of the band: below it flight tells poles apart by their difference only. `c` is the modal assurance
+//! criterion, 1 for equal shapes and 0 for orthogonal ones: Allemang & Brown, "A correlation coefficient for modal vector analysis",
+//! Proc. 1st International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
+
+use nalgebra::Complex;
+
+use crate::fidelity::least_total;
+use gdcm_model::response::Mode;
+
+/// Distance in the s-plane beyond which two modes are no pair, as a part of the larger modulus.
+pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
+/// Likeness of the residues over the outputs below which two modes are no pair.
+pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
+/// What a flown mode without a partner counts: as much as the worst pair.
+const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
+/// What two modes cost that are no pair: more than any number of unpaired modes.
+const BARRED_COST: f64 = 1e9;
+
+/// A mode of a model in the place of a flown one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ModePair {
+    /// Index among the model's modes.
+    pub(super) mode: usize,
+    /// `d + 1 - c`: 0 for the same pole and the same shape, at most 1.
+    pub(super) cost: f64,
+}
+
+/// One mode of each conjugate pair, by index.
+pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
+    (0..modes.len()).filter(|&index| modes[index].pole.im >= 0.0).collect()
+}
+
+/// The partner among `model` of each of [`single_modes`] of `flown`; none where it is unpaired. No mode is a partner twice.
+pub(super) fn mode_pairs(flown: &[Mode], model: &[Mode], least_rad_s: f64) -> Vec<Option<ModePair>> {
+    let rows = single_modes(flown);
+    let columns = single_modes(model);
+    let scales = output_scales(flown, least_rad_s);
+    let cost = |row: usize, column: usize| {
+        let Some(&mode) = columns.get(column) else { return UNPAIRED_COST };
+        pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s).unwrap_or(BARRED_COST)
+    };
+    // Each flown mode has a column of its own besides: to be unpaired.
+    let assigned = least_total(rows.len(), columns.len() + rows.len(), cost);
+    let pair = |(row, column): (usize, usize)| {
+        let mode = *columns.get(column)?;
+        let cost = pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s)?;
+        Some(ModePair { mode, cost })
+    };
+    assigned.into_iter().enumerate().map(pair).collect()
+}
+
+/// `d + 1 - c` of two modes; none where they are no pair.
+fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
+    let largest = flown.frequency_rad_s.max(model.frequency_rad_s).max(least_rad_s);
+    let distance = (flown.pole - model.pole).norm() / largest;
+    // Where a shape is not known, the distance decides.
+    let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
+    let is_pair = distance <= LARGEST_PAIR_DISTANCE && likeness >= LEAST_PAIR_LIKENESS;
+    if is_pair { Some(distance + 1.0 - likeness) } else { None }
+}
+
+/// `s_i` of each output; zero where no flown mode reaches it.
+fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
+    let mut squares: Vec<f64> = Vec::new();
+    for mode in flown {
+        let residues = mode.residues.as_deref().unwrap_or_default();
+        squares.resize(squares.len().max(residues.len()), 0.0);
+        for (square, residue) in squares.iter_mut().zip(residues) {
+            *square += (residue.norm() / mode.frequency_rad_s.max(least_rad_s)).powi(2);
+        }
+    }
+    squares.into_iter().map(f64::sqrt).collect()
+}
+
+/// `c` of two modes; none where one of them has no known shape, or no flown mode reaches any output.
+fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
+    let [of_flown, of_model] = [flown, model].map(|mode| mode.residues.as_deref());
+    let mut product = Complex::from(0.0);
+    let mut squares = [0.0; 2];
+    let mut is_reached = false;
+    for ((flown, model), scale) in of_flown?.iter().zip(of_model?).zip(scales) {
+        if *scale > 0.0 {
+            let (flown, model) = (flown / scale, model / scale);
+            product += flown.conj() * model;
+            squares[0] += flown.norm_sqr();
+            squares[1] += model.norm_sqr();
+            is_reached = true;
+        }
+    }
+    let likeness = product.norm_sqr() / (squares[0] * squares[1]);
+    // A mode that no input moves, or no output shows, is like no other.
+    is_reached.then(|| if likeness.is_finite() { likeness } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, dmatrix};
+
+    use super::*;
+    use gdcm_model::dataset::StateSpace;
+    use gdcm_model::response::modes;
+
+    /// The modes of lags `-rate`, each seen by the outputs as its row says.
+    fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
+        let n = rates.len();
+        let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(n, rates.iter().map(|rate| -rate)));
+        let c = DMatrix::from_fn(2, n, |output, state| shapes[state][output]);
+        modes(&StateSpace::new(a, DMatrix::from_element(n, 1, 1.0), c, DMatrix::zeros(2, 1)).unwrap()).unwrap()
+    }
+
+    fn partners(flown: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
+        mode_pairs(flown, model, 0.5).into_iter().map(|pair| pair.map(|pair| pair.mode)).collect()
+    }
+
+    #[test]
+    fn of_two_modes_as_near_that_of_the_same_shape_is_the_partner() {
+        let (roll, pitch) = ([1.0, 0.0], [0.0, 1.0]);
+        let flown = lags(&[2.0, 3.0], &[pitch, roll]);
+        // By distance alone the first would go with the first.
+        assert_eq!(partners(&flown, &lags(&[2.1, 2.9], &[roll, pitch])), [Some(1), Some(0)]);
+        assert_eq!(partners(&flown, &lags(&[2.1, 2.9], &[pitch, roll])), [Some(0), Some(1)]);
+    }
+
+    #[test]
+    fn units_of_the_outputs_do_not_matter() {
+        let (roll, pitch) = ([1.0, 0.2], [0.1, 1.0]);
+        let in_other_units = |[first, second]: [f64; 2]| [first, 1e-3 * second];
+        let [flown, model] = [[2.0, 3.0], [2.4, 2.6]];
+        let before = mode_pairs(&lags(&flown, &[roll, pitch]), &lags(&model, &[pitch, roll]), 0.5);
+        let [roll, pitch] = [roll, pitch].map(in_other_units);
+        let after = mode_pairs(&lags(&flown, &[roll, pitch]), &lags(&model, &[pitch, roll]), 0.5);
+        assert_eq!(before.iter().flatten().count(), 2);
+        for (before, after) in before.iter().flatten().zip(after.iter().flatten()) {
+            assert!(before.mode == after.mode && (before.cost - after.cost).abs() < 1e-12, "{before:?} {after:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_farther_than_half_the_larger_modulus_is_unpaired() {
+        let shape = [[1.0, 0.5]];
+        assert_eq!(partners(&lags(&[2.8], &shape), &lags(&[0.28], &shape)), [None]);
+        assert_eq!(partners(&lags(&[2.0], &shape), &lags(&[1.01], &shape)), [Some(0)]);
+        assert_eq!(partners(&lags(&[2.0], &shape), &lags(&[0.99], &shape)), [None]);
+        // Below the band by its lower end, 0.5 rad/s.
+        assert_eq!(partners(&lags(&[0.2], &shape), &lags(&[0.01], &shape)), [Some(0)]);
+    }
+
+    #[test]
+    fn a_conjugate_pair_is_the_partner_of_one_mode() {
+        let pair = |re: f64, im: f64| {
+            let a = dmatrix![re, im; -im, re];
+            modes(&StateSpace::new(a, dmatrix![1.0; 0.0], dmatrix![1.0, 0.0; 0.0, 1.0], DMatrix::zeros(2, 1)).unwrap())
+                .unwrap()
+        };
+        let shape = [1.0, 1.0];
+        let found = partners(&lags(&[0.26, 0.3], &[shape, shape]), &pair(-0.28, 0.05));
+        assert_eq!(found.iter().flatten().count(), 1, "{found:?}");
+        assert_eq!(partners(&pair(-1.0, 2.0), &pair(-1.1, 2.1)), [Some(0)]);
+    }
+
+    #[test]
+    fn a_mode_that_no_input_moves_is_no_partner() {
+        let flown = lags(&[2.0], &[[1.0, 0.0]]);
+        assert_eq!(partners(&flown, &lags(&[2.0, 2.6], &[[0.0, 0.0], [1.0, 0.0]])), [Some(1)]);
+    }
+}

@@ -1,0 +1,245 @@
+//! Summary costs of one model of one condition (M17.4): mean J, weighted rms in time, Theil's coefficients, share of the band inside
+//! the MUAD envelopes.
+//!
+//! ```text
+//! J:      mean over the on-axis responses, and over all, of J_mag + J_phase after the correction (M4)
+//! J_rms:  sqrt(1 / (n_t n_o) sum (y - y^)' W (y - y^)), W = 1 in deg/s, deg, ft/s^2, ft/s: 1 deg counts as 1 ft/s^2
+//! Theil:  rms(y - y^) / (rms y + rms y^) of each channel (M14, 6)
+//! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
+//! ```
+//!
+//! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms and its weights); MIL-STD-1797A,
+//! appendix A, 4.2.1.2 (MUAD).
+
+use crate::fidelity::{CostAverage, Mismatch, leaves};
+use gdcm_model::assembly::{Dimension, PhysicalUnit, conversion_factor};
+use gdcm_model::dataset::{Channel, Pair, PairTable};
+use gdcm_model::response::{GainDelay, mean, wrap};
+use gdcm_model::simulation::{Validation, ValidationWindow};
+
+/// A mean over the on-axis responses, and over all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OnAxisAndAll {
+    /// Over the on-axis responses; none where none of them is defined.
+    pub on_axis: Option<f64>,
+    /// Over all responses; none where none is defined.
+    pub all: Option<f64>,
+}
+
+impl OnAxisAndAll {
+    /// The means of what is defined.
+    pub fn of(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
+        let mean_of = |counts: &dyn Fn(Pair) -> bool| {
+            let counted = values.iter().filter(|(pair, _)| counts(*pair));
+            let defined: Vec<f64> = counted.filter_map(|(_, value)| *value).collect();
+            (!defined.is_empty()).then(|| mean(&defined))
+        };
+        Self { on_axis: mean_of(&|pair| on_axis.get(pair) == Some(&true)), all: mean_of(&|_| true) }
+    }
+}
+
+/// The weighted rms error of a model in time, `J_rms`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RmsCost {
+    /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
+    pub value: f64,
+    /// Outputs that have no weight, by index: their units are none of angles, speeds and accelerations.
+    pub left_out: Vec<usize>,
+}
+
+impl RmsCost {
+    /// Over all samples of `windows`; none where there are no samples, or no output has a weight.
+    pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
+        let weights: Vec<Option<f64>> = outputs.iter().map(|output| factor(&output.unit)).collect();
+        let counted: Vec<(usize, f64)> =
+            weights.iter().enumerate().filter_map(|(output, weight)| Some((output, (*weight)?))).collect();
+        let (mut sum, mut samples) = (0.0, 0);
+        for window in windows {
+            samples += window.measured.nrows();
+            for &(output, factor) in counted.iter().filter(|(output, _)| *output < window.measured.ncols()) {
+                let error = window.measured.column(output) - window.simulated.column(output);
+                sum += factor * factor * error.norm_squared();
+            }
+        }
+        let left_out = (0..outputs.len()).filter(|&output| weights[output].is_none()).collect();
+        let count = samples * counted.len();
+        (count > 0).then(|| Self { value: (sum / count as f64).sqrt(), left_out })
+    }
+}
+
+/// How many deg, deg/s, ft/s or ft/s^2 one of a unit is; none of any other unit.
+fn factor(unit: &str) -> Option<f64> {
+    let counted = match PhysicalUnit::of(unit)?.dimension {
+        Dimension::Angle => "deg",
+        Dimension::AngularRate => "deg/s",
+        Dimension::Speed => "ft/s",
+        Dimension::Acceleration => "ft/s^2",
+        _ => return None,
+    };
+    conversion_factor(unit, counted)
+}
+
+/// Share of the band, in `ln omega`, in which the error of a response stays inside both MUAD envelopes, after `correction`; none where
+/// it stands at fewer than two frequencies.
+pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
+    let omega = mismatch.omega(omega);
+    let (&first, &last) = omega.first().zip(omega.last()).filter(|(first, last)| first < last)?;
+    let error_db: Vec<f64> = correction.magnitudes_db(&mismatch.magnitude_db, omega).collect();
+    let error_deg: Vec<f64> = correction.phases(&mismatch.phase, omega).map(|phase| wrap(phase).to_degrees()).collect();
+    let outside: f64 = leaves(omega, &error_db, &error_deg).iter().map(|(from, to)| (to / from).ln()).sum();
+    Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
+}
+
+/// What the summary costs of a model are made of.
+#[derive(Clone, Copy)]
+pub struct SummarySource<'a> {
+    /// Difference of the model's responses from those of the identified representative; none where they are not compared.
+    pub mismatch: &'a PairTable<Option<Mismatch>>,
+    /// What its correction multiplies each response by; none where it has no positive net gain.
+    pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
+    /// The on-axis responses.
+    pub on_axis: &'a PairTable<bool>,
+    /// Frequencies of the band \[rad/s\], rising.
+    pub omega: &'a [f64],
+    /// How J averages over them.
+    pub average: CostAverage,
+    /// The model against a record in time, where there is one.
+    pub validation: Option<&'a Validation>,
+    /// Outputs of the dataset.
+    pub outputs: &'a [Channel],
+}
+
+/// The summary costs of one model of one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Mean J.
+    pub cost: OnAxisAndAll,
+    /// `J_rms`; none without a record.
+    pub rms: Option<RmsCost>,
+    /// Theil's coefficient of each output, 0 to 1; empty without a record, none of an output that does not move.
+    pub theil: Vec<Option<f64>>,
+    /// Mean share of the band inside MUAD, 0 to 1.
+    pub muad: OnAxisAndAll,
+}
+
+impl Summary {
+    /// The summary costs of a model.
+    pub fn of(source: &SummarySource<'_>) -> Self {
+        let SummarySource { mismatch, correction, on_axis, omega, average, validation, outputs } = *source;
+        let of_each = |value: &dyn Fn(&Mismatch, GainDelay) -> Option<f64>| {
+            let values = mismatch.map(|pair, mismatch| value(mismatch.as_ref()?, correction(pair)?));
+            OnAxisAndAll::of(&values, on_axis)
+        };
+        Self {
+            cost: of_each(&|mismatch, correction| Some(mismatch.cost(omega, correction, average).total())),
+            rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
+            theil: validation.map(|validation| validation.theil.clone()).unwrap_or_default(),
+            muad: of_each(&|mismatch, correction| muad_share(mismatch, omega, correction)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gdcm_model::response::log_spaced;
+    use gdcm_model::units::db_to_ratio;
+    use nalgebra::DMatrix;
+
+    fn omega() -> Vec<f64> {
+        log_spaced(0.5, 12.0, 200)
+    }
+
+    fn mismatch(magnitude_db: f64, delay_s: f64) -> Mismatch {
+        let phase = omega().iter().map(|omega| wrap(-omega * delay_s)).collect();
+        Mismatch { magnitude_db: vec![magnitude_db; 200], phase, coherence_weights: None, turn: 0.0 }
+    }
+
+    fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
+        let columns = |values: &[f64]| DMatrix::from_column_slice(values.len() / 3, 3, values);
+        let (measured, simulated) = (columns(measured), columns(simulated));
+        ValidationWindow { record: 0, start_s: 0.0, sample_time_s: 0.1, measured, simulated }
+    }
+
+    fn outputs() -> [Channel; 3] {
+        [("P", "deg/s"), ("NZ", "m/s^2"), ("T", "N")].map(|(name, unit)| Channel::new(name, unit))
+    }
+
+    #[test]
+    fn a_degree_counts_as_a_foot_a_second_squared() {
+        // Errors of 3 deg/s and of 1 ft/s^2 in both samples; the force has no weight.
+        let windows = [window(&[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0], &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0])];
+        let cost = RmsCost::of(&windows, &outputs()).unwrap();
+        assert!((cost.value - 5.0_f64.sqrt()).abs() < 1e-13, "the root of (9 + 1) / 2: {cost:?}");
+        assert_eq!(cost.left_out, [2]);
+        assert_eq!(RmsCost::of(&[], &outputs()), None);
+        assert_eq!(RmsCost::of(&windows, &outputs()[2..]), None);
+        let twice = [windows[0].clone(), windows[0].clone()];
+        assert_eq!(RmsCost::of(&twice, &outputs()).unwrap(), cost, "more of the same is the same");
+    }
+
+    #[test]
+    fn a_model_without_error_is_wholly_inside_and_costs_nothing() {
+        let (table, on_axis) = (PairTable::filled(1, 1, Some(mismatch(0.0, 0.0))), PairTable::filled(1, 1, true));
+        let source = SummarySource {
+            mismatch: &table,
+            correction: &|_| Some(GainDelay::NONE),
+            on_axis: &on_axis,
+            omega: &omega(),
+            average: CostAverage::Median,
+            validation: None,
+            outputs: &outputs(),
+        };
+        let summary = Summary::of(&source);
+        assert_eq!((summary.cost.all, summary.muad.on_axis, summary.rms), (Some(0.0), Some(1.0), None));
+        assert!(summary.theil.is_empty());
+    }
+
+    #[test]
+    fn the_share_inside_is_that_of_the_band_in_log_frequency() {
+        // 2 dB leave the upper magnitude between some 2 and 6 rad/s (muad.rs).
+        let (omega, two_db) = (omega(), mismatch(2.0, 0.0));
+        let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
+        let expected = 1.0 - (ranges[0].1 / ranges[0].0).ln() / 24.0_f64.ln();
+        assert!((muad_share(&two_db, &omega, GainDelay::NONE).unwrap() - expected).abs() < 1e-14);
+        assert_eq!(muad_share(&two_db, &omega, GainDelay::new(db_to_ratio(-2.0), 0.0)), Some(1.0));
+        assert_eq!(muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE), Some(0.0));
+        // A delay of a quarter of a second that the correction takes off, turns and all.
+        let lead = mismatch(0.0, -0.25);
+        let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
+        assert!(share < 0.5, "{share}");
+        assert_eq!(muad_share(&lead, &omega, GainDelay::new(1.0, 0.25)), Some(1.0));
+        let one = Mismatch { magnitude_db: vec![0.0], phase: vec![0.0], coherence_weights: None, turn: 0.0 };
+        assert_eq!(muad_share(&one, &[1.0], GainDelay::NONE), None);
+    }
+
+    #[test]
+    fn means_leave_out_what_is_not_defined() {
+        let values =
+            PairTable::from_fn(2, 2, |pair| [[Some(1.0), Some(5.0)], [None, Some(3.0)]][pair.output][pair.input]);
+        let on_axis = PairTable::from_fn(2, 2, |pair| pair.output == pair.input);
+        assert_eq!(OnAxisAndAll::of(&values, &on_axis), OnAxisAndAll { on_axis: Some(2.0), all: Some(3.0) });
+        let nothing = OnAxisAndAll::of(&PairTable::filled(2, 2, None), &on_axis);
+        assert_eq!(nothing, OnAxisAndAll::default());
+    }
+
+    #[test]
+    fn a_correction_without_a_positive_gain_leaves_a_response_out() {
+        let table = PairTable::from_fn(1, 2, |_| Some(mismatch(2.0, 0.0)));
+        let on_axis = PairTable::from_fn(1, 2, |pair| pair.input == 0);
+        let correction = |pair: Pair| (pair.input == 1).then_some(GainDelay::NONE);
+        let source = SummarySource {
+            mismatch: &table,
+            correction: &correction,
+            on_axis: &on_axis,
+            omega: &omega(),
+            average: CostAverage::Mean,
+            validation: None,
+            outputs: &outputs(),
+        };
+        let summary = Summary::of(&source);
+        // 20 W_g 2^2, by M4.
+        assert_eq!((summary.cost.on_axis, summary.muad.on_axis), (None, None));
+        assert!((summary.cost.all.unwrap() - 80.0).abs() < 1e-12);
+    }
+}

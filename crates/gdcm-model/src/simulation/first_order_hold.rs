@@ -1,0 +1,75 @@
+//! A state-space model in discrete time, exact for inputs that are linear between samples.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::dataset::StateSpace;
+
+/// A model over one sample time `T`, exact for inputs that are linear between samples (first-order hold; C. F. Van Loan,
+/// IEEE Trans. Autom. Control 23, 1978).
+///
+/// ```text
+///     [A T  B T  0]   [Phi  G1  G2]
+/// exp [ 0    0   I] = [ 0   I   I ],    x[n+1] = Phi x[n] + G1 u[n] + G2 (u[n+1] - u[n]),    y = C x + D u
+///     [ 0    0   0]   [ 0   0   I ]
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstOrderHold {
+    phi: DMatrix<f64>,
+    gamma: DMatrix<f64>,
+    gamma_slope: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+}
+
+impl FirstOrderHold {
+    /// `model` over `sample_time_s` \[s\]; none where the result is not finite.
+    #[must_use]
+    pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
+        let (n, m) = (model.order(), model.inputs());
+        let mut exponent = DMatrix::zeros(n + 2 * m, n + 2 * m);
+        exponent.view_mut((0, 0), (n, n)).copy_from(&model.a().scale(sample_time_s));
+        exponent.view_mut((0, n), (n, m)).copy_from(&model.b().scale(sample_time_s));
+        exponent.view_mut((n, n + m), (m, m)).fill_with_identity();
+        if !exponent.norm().is_finite() {
+            return None;
+        }
+        let exponential = exponent.exp();
+        exponential.iter().all(|entry| entry.is_finite()).then(|| Self {
+            phi: exponential.view((0, 0), (n, n)).into_owned(),
+            gamma: exponential.view((0, n), (n, m)).into_owned(),
+            gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
+            c: model.c().clone(),
+            d: model.d().clone(),
+        })
+    }
+
+    /// The outputs from the state `initial` for `inputs`, both one row a sample.
+    #[must_use]
+    pub fn simulate(&self, initial: &DVector<f64>, inputs: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut outputs = DMatrix::zeros(inputs.nrows(), self.c.nrows());
+        let mut x = initial.clone();
+        let input = |n: usize| inputs.row(n).transpose();
+        for n in 0..inputs.nrows() {
+            let u = input(n);
+            outputs.set_row(n, &(&self.c * &x + &self.d * &u).transpose());
+            if n + 1 < inputs.nrows() {
+                x = &self.phi * x + &self.gamma * &u + &self.gamma_slope * (input(n + 1) - &u);
+            }
+        }
+        outputs
+    }
+
+    /// What each initial state by itself does to the outputs: `C Phi^n` for `samples` samples, (samples x outputs) x states,
+    /// all outputs of a sample one after another.
+    #[must_use]
+    pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
+        let (outputs, states) = self.c.shape();
+        let mut responses = DMatrix::zeros(samples * outputs, states);
+        let mut response = self.c.clone();
+        for n in 0..samples {
+            responses.rows_mut(n * outputs, outputs).copy_from(&response);
+            response = &response * &self.phi;
+        }
+        responses
+    }
+}

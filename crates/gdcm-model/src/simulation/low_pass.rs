@@ -1,0 +1,97 @@
+//! A linear-phase low-pass filter for flight records.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::DMatrix;
+
+use super::flight_record::Segment;
+
+/// Half length of the filter in periods of the cut-off.
+const PERIODS: f64 = 4.0;
+/// Above this share of half the sampling frequency there is nothing to filter.
+const NEAR_NYQUIST: f64 = 0.8;
+/// The longest half length in samples; more is asked for only by an absurd cut-off.
+const LONGEST: f64 = 1e5;
+
+/// A symmetric finite impulse response: a sinc in a Hamming window, of unit sum.
+///
+/// ```text
+/// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
+/// ```
+///
+/// It moves no phase, and as every channel of a record goes through the same one, the response between them stays what it
+/// was. At both ends the signal goes on as its odd reflection, `2 x[0] - x[n]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LowPass {
+    /// `h[0] ... h[M]`.
+    half: Vec<f64>,
+}
+
+impl LowPass {
+    /// The filter with cut-off `omega` \[rad/s\] for a sample time \[s\]; none where `omega dt > 0.8 pi`, for then there is
+    /// nothing to take off, where either is not greater than 0, and where `M` would be over 100 000.
+    #[must_use]
+    pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
+        let step = omega * sample_time_s;
+        if !(step > 0.0 && step <= NEAR_NYQUIST * PI) {
+            return None;
+        }
+        let length = (PERIODS * TAU / step).ceil();
+        if length > LONGEST {
+            return None;
+        }
+        let tap = |n: usize| {
+            let n = n as f64;
+            let sinc = if n == 0.0 { step / PI } else { (step * n).sin() / (PI * n) };
+            sinc * (0.54 + 0.46 * (PI * n / length).cos())
+        };
+        let mut half: Vec<f64> = (0..=length as usize).map(tap).collect();
+        let sum = half[0] + 2.0 * half.iter().skip(1).sum::<f64>();
+        half.iter_mut().for_each(|h| *h /= sum);
+        Some(Self { half })
+    }
+
+    /// `samples`, filtered.
+    #[must_use]
+    pub fn filter(&self, samples: &[f64]) -> Vec<f64> {
+        let reach = self.half.len() - 1;
+        let extended = oddly_reflected(samples, reach);
+        let filtered = |n: usize| {
+            let centre = n + reach;
+            let sides = |(k, h): (usize, &f64)| h * (extended[centre - k] + extended[centre + k]);
+            self.half[0] * extended[centre] + self.half.iter().enumerate().skip(1).map(sides).sum::<f64>()
+        };
+        (0..samples.len()).map(filtered).collect()
+    }
+
+    /// Every channel of a segment through the filter with cut-off `omega` \[rad/s\]; as it is where there is nothing to take off.
+    #[must_use]
+    pub fn applied(omega: f64, segment: &Segment) -> Segment {
+        let Some(low_pass) = Self::new(omega, segment.sample_time_s) else { return segment.clone() };
+        let side = |samples: &DMatrix<f64>| {
+            let filtered: Vec<f64> =
+                samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| low_pass.filter(x)).collect();
+            DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
+        };
+        Segment { inputs: side(&segment.inputs), outputs: side(&segment.outputs), ..segment.clone() }
+    }
+}
+
+/// `samples` with `reach` more at each end, reflected oddly as often as it takes; a single sample goes on as it is.
+fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
+    let Some((&first, &last)) = samples.first().zip(samples.last()) else {
+        return Vec::new();
+    };
+    let length = samples.len();
+    let mut extended = vec![first; length + 2 * reach];
+    extended[reach..reach + length].copy_from_slice(samples);
+    if length > 1 {
+        let (start, end) = (reach, reach + length - 1);
+        for k in 1..=reach {
+            // Both ends grow together, so that what is reflected is there by then, however short the signal.
+            extended[start - k] = 2.0 * first - extended[start + k];
+            extended[end + k] = 2.0 * last - extended[end - k];
+        }
+    }
+    extended
+}

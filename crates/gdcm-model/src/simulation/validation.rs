@@ -1,0 +1,282 @@
+//! A model against a record in time.
+
+use nalgebra::{DMatrix, DVector, RowDVector};
+
+use super::first_order_hold::FirstOrderHold;
+use super::flight_record::{Segment, centred};
+use super::low_pass::LowPass;
+use crate::dataset::StateSpace;
+use crate::executor::{Executor, each};
+use crate::response::poles;
+
+/// Time constants of the fastest diverging mode that a window lasts (M14, 6).
+const TIME_CONSTANTS: f64 = 3.0;
+/// Samples of all outputs over the unknowns (initial state and offsets) that a window has at least.
+const OVER_UNKNOWNS: usize = 3;
+/// Initial states that show less than this share of the one that shows most are not estimated.
+const RANK_TOLERANCE: f64 = 1e-9;
+
+/// How a model is compared with a record in time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ValidationSettings {
+    /// The longest window \[s\].
+    pub longest_window_s: f64,
+    /// Cut-off of the low-pass of inputs and outputs \[rad/s\]; none compares the signals as they are.
+    pub low_pass: Option<f64>,
+}
+
+impl ValidationSettings {
+    /// Windows of 10 s; signals low-passed at twice the highest line used, `highest` \[rad/s\] (M14, 6).
+    #[must_use]
+    pub fn filtered(highest: f64) -> Self {
+        Self { longest_window_s: 10.0, low_pass: Some(2.0 * highest) }
+    }
+
+    /// Windows of 10 s of the signals as they are, to be drawn.
+    #[must_use]
+    pub fn unfiltered() -> Self {
+        Self { longest_window_s: 10.0, low_pass: None }
+    }
+
+    /// The same with windows that all of `models` are compared over: the shortest that one of them asks for. A model that has too few samples
+    /// in its own windows is compared with nothing, and shortens none of the others'.
+    #[must_use]
+    pub fn common_to<'m>(self, models: impl IntoIterator<Item = &'m StateSpace>, segments: &[Segment]) -> Self {
+        let own = |model: &StateSpace| {
+            let window_s = window_s(model, self.longest_window_s)?;
+            segments.iter().any(|segment| windows_in(model, segment, window_s).is_some()).then_some(window_s)
+        };
+        let longest_window_s = models.into_iter().filter_map(own).fold(self.longest_window_s, f64::min);
+        Self { longest_window_s, ..self }
+    }
+}
+
+/// A window of a record, measured and simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ValidationWindow {
+    /// Which of the records it is of, counted from 0.
+    pub record: usize,
+    /// Time of its first sample \[s\], on the record's clock.
+    pub start_s: f64,
+    /// Sample time \[s\].
+    pub sample_time_s: f64,
+    /// Outputs as compared, one row a sample.
+    pub measured: DMatrix<f64>,
+    /// Outputs of the model, one row a sample.
+    pub simulated: DMatrix<f64>,
+}
+
+/// A model against records in time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Validation {
+    /// The windows, by segment and time; at least one.
+    pub windows: Vec<ValidationWindow>,
+    /// Of each output `100 (1 - rms(e) / std(y))`, at most 100; none where the output does not move.
+    pub fit_percent: Vec<Option<f64>>,
+    /// Of each output Theil's coefficient `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1; none where neither moves.
+    pub theil: Vec<Option<f64>>,
+}
+
+/// Why a model cannot be compared with a record in time.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ValidationError {
+    /// There are no segments.
+    #[error("there is no record to compare the model with")]
+    NoSegments,
+    /// The model has other inputs or outputs than a segment; of which record, counted from 0.
+    #[error("record {} has other channels than the model", .0 + 1)]
+    ChannelsDiffer(usize),
+    /// The response of the model over one sample is not finite.
+    #[error("the model cannot be simulated: its matrices do not fit each other or hold values that are not finite")]
+    NotSimulated,
+    /// The longest window is no time.
+    #[error("windows must last longer than 0 s")]
+    NoWindow,
+    /// Too few samples to estimate an initial state and to compare as well; length of the longest window \[s\].
+    #[error(
+        "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
+         model's fastest diverging mode, hold too few samples for its initial state"
+    )]
+    TooShort(f64),
+    /// The simulation leaves the range of numbers.
+    #[error("the simulated outputs are not finite")]
+    NotFinite,
+}
+
+/// `model`, in the units of the file, against `segments` in time (M14, 6): windows short enough for an unstable model, each with
+/// its own initial state and output offsets.
+///
+/// ```text
+/// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
+/// y^ = C Phi^n x0 + offset + response to (u - mean u), inputs linear between samples
+/// x0, offset: least squares over the outputs, each over its std
+/// fit = 100 (1 - rms(y - y^) / std(y)),   Theil = rms(y - y^) / (rms(y) + rms(y^))
+/// ```
+///
+/// # Errors
+/// No segments, other channels than the model's, a model that cannot be simulated, windows too short.
+pub fn validate(
+    model: &StateSpace,
+    segments: &[Segment],
+    settings: &ValidationSettings,
+    executor: &dyn Executor,
+) -> Result<Validation, ValidationError> {
+    if segments.is_empty() {
+        return Err(ValidationError::NoSegments);
+    }
+    let differs = |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
+    if let Some(segment) = segments.iter().find(differs) {
+        return Err(ValidationError::ChannelsDiffer(segment.record));
+    }
+    if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
+        return Err(ValidationError::NoWindow);
+    }
+    let window_s = window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
+    let filtered = each(executor, segments, |segment| match settings.low_pass {
+        Some(omega) => LowPass::applied(omega, segment),
+        None => segment.clone(),
+    });
+    let std = deviations(filtered.iter().map(|segment| &segment.outputs));
+    let windows = each(executor, &filtered, |segment| windows(model, segment, window_s, &std));
+    let windows: Vec<ValidationWindow> =
+        windows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    if windows.is_empty() {
+        return Err(ValidationError::TooShort(window_s));
+    }
+    let (fit_percent, theil) = figures(&windows);
+    Ok(Validation { windows, fit_percent, theil })
+}
+
+/// Length of a window \[s\]; none where the model is not finite or its poles are not found.
+fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
+    let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
+    Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
+}
+
+/// In how many windows a segment is cut; none where they hold too few samples for the initial state of a model.
+fn windows_in(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
+    let (samples, outputs) = segment.outputs.shape();
+    // A millionth of a window is rounding.
+    let count =
+        (samples as f64 * segment.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
+    ((samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs)).then_some(count)
+}
+
+/// The windows of one segment; none where it is too short.
+fn windows(
+    model: &StateSpace,
+    segment: &Segment,
+    window_s: f64,
+    std: &[f64],
+) -> Result<Vec<ValidationWindow>, ValidationError> {
+    let held = FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
+    let Some(count) = windows_in(model, segment, window_s) else { return Ok(Vec::new()) };
+    let samples = segment.outputs.nrows();
+    let longest = samples.div_ceil(count);
+    let free = held.free_responses(longest);
+    let window = |k: usize| {
+        // The product is taken in 128 bits: it may be large.
+        let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
+        let (from, length) = (bound(k), bound(k + 1) - bound(k));
+        let measured = segment.outputs.rows(from, length).into_owned();
+        let simulated = best_simulation(&held, &free, segment.inputs.rows(from, length).into_owned(), &measured, std)?;
+        Some(ValidationWindow {
+            record: segment.record,
+            start_s: segment.start_s + segment.sample_time_s * from as f64,
+            sample_time_s: segment.sample_time_s,
+            measured,
+            simulated,
+        })
+    };
+    (0..count).map(|k| window(k).ok_or(ValidationError::NotFinite)).collect()
+}
+
+/// The outputs for `inputs` with the initial state and the offsets that bring them closest to `measured`; none where they are
+/// not finite.
+fn best_simulation(
+    held: &FirstOrderHold,
+    free: &DMatrix<f64>,
+    inputs: DMatrix<f64>,
+    measured: &DMatrix<f64>,
+    std: &[f64],
+) -> Option<DMatrix<f64>> {
+    let (samples, outputs) = measured.shape();
+    let states = free.ncols();
+    let forced = held.simulate(&DVector::zeros(states), &centred(inputs));
+
+    // Rows: sample after sample, each output over its std; columns: initial states, offsets, what is left to explain.
+    let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);
+    for n in 0..samples {
+        for (o, std) in std.iter().enumerate() {
+            let mut row = rows.row_mut(n * outputs + o);
+            row.columns_mut(0, states).copy_from(&(free.row(n * outputs + o) / *std));
+            row[states + o] = 1.0 / std;
+            row[states + outputs] = (measured[(n, o)] - forced[(n, o)]) / std;
+        }
+    }
+    let unknowns = solve(rows)?;
+    let free_part = free.rows(0, samples * outputs) * unknowns.rows(0, states);
+    let simulated =
+        DMatrix::from_fn(samples, outputs, |n, o| forced[(n, o)] + free_part[n * outputs + o] + unknowns[states + o]);
+    simulated.iter().all(|y| y.is_finite()).then_some(simulated)
+}
+
+/// The least-squares solution `x` of `[a | b]` for `a x = b`, of least length in columns of length one; none where not finite.
+fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
+    let unknowns = rows.ncols() - 1;
+    if !rows.norm().is_finite() {
+        return None;
+    }
+    let r = rows.qr().unpack_r();
+    let mut a = r.view((0, 0), (unknowns, unknowns)).into_owned();
+    let lengths =
+        RowDVector::from_fn(unknowns, |_, column| Some(a.column(column).norm()).filter(|x| *x > 0.0).unwrap_or(1.0));
+    for (mut column, length) in a.column_iter_mut().zip(lengths.iter()) {
+        column /= *length;
+    }
+    let svd = a.try_svd(true, true, f64::EPSILON, 100 * (unknowns + 1))?;
+    let tolerance = RANK_TOLERANCE * svd.singular_values.max();
+    let solution = svd.solve(&r.view((0, unknowns), (unknowns, 1)).into_owned(), tolerance).ok()?;
+    Some(solution.column(0).component_div(&lengths.transpose()))
+}
+
+/// The standard deviation of each column about its mean over all `parts`, 1 where it does not move.
+fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
+    let means = means(parts.clone());
+    let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
+    let samples: usize = parts.map(DMatrix::nrows).sum();
+    let deviation = |square: &f64| (square / samples.max(1) as f64).sqrt();
+    squares.iter().map(deviation).map(|std| if std > 0.0 && std.is_finite() { std } else { 1.0 }).collect()
+}
+
+fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
+    let samples: usize = parts.clone().map(DMatrix::nrows).sum();
+    sums(parts, |_, y| y).iter().map(|sum| sum / samples.max(1) as f64).collect()
+}
+
+/// The sum over all samples of `term(column, value)`, for each column.
+fn sums<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>>, term: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+    let mut sums: Vec<f64> = Vec::new();
+    for part in parts {
+        sums.resize(part.ncols(), 0.0);
+        for (o, column) in part.column_iter().enumerate() {
+            sums[o] += column.iter().map(|y| term(o, *y)).sum::<f64>();
+        }
+    }
+    sums
+}
+
+/// Fit \[%\] and Theil's coefficient of each output over all windows.
+fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
+    let measured = windows.iter().map(|window| &window.measured);
+    let means = means(measured.clone());
+    let errors: Vec<DMatrix<f64>> = windows.iter().map(|window| &window.measured - &window.simulated).collect();
+    let error = sums(errors.iter(), |_, e| e * e);
+    let power = sums(measured, |o, y| (y - means[o]).powi(2));
+    let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| (y - means[o]).powi(2));
+    // Every sum is over the same samples, which cancel.
+    let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+    let fit = |o: usize| finite(100.0 * (1.0 - (error[o] / power[o]).sqrt()));
+    let theil = |o: usize| finite(error[o].sqrt() / (power[o].sqrt() + simulated[o].sqrt()));
+    ((0..means.len()).map(fit).collect(), (0..means.len()).map(theil).collect())
+}

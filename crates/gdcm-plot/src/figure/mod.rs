@@ -1,0 +1,238 @@
+//! Figures: what plots show, apart from any screen, laid out on paper to be printed.
+//!
+//! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`] has panels above one another; a [`Panel`] has
+//! two axes and marks. [`Figure::drawing`] lays it out at the width of a journal's column, in sizes that can be read in print, and
+//! in lines that differ without their colours; [`Figure::tables`] are its numbers. Every view of the window has a function here that
+//! makes its figure, and the command `gdcm figure` calls the same.
+//!
+//! ```
+//! use gdcm_plot::figure::{Axis, ColumnWidth, Curve, Figure, Panel, Plot, Role};
+//!
+//! let omega = [0.5, 1.0, 2.0];
+//! let nominal = Curve::new("nominal", Role::Nominal.stroke(false), omega, [3.0, 1.0, -4.0]).key("nominal");
+//! let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), Axis::linear("Magnitude [dB]")).with(nominal);
+//! let figure = Figure::new("LON → Q, condition 10").caption("Simulated data.").plot(Plot::new("LON → Q").panel(panel));
+//! assert_eq!(figure.tables()[0].columns, ["Frequency [rad/s]", "nominal [dB]"]);
+//! assert_eq!(figure.legend()[0].text, "nominal");
+//! // 84 mm are 238 pt.
+//! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
+//! ```
+
+use gdcm_method::correction::Channel;
+use std::sync::Arc;
+
+use gdcm_model::dataset::{ModelId, Pair};
+use gdcm_study::study::{
+    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, RecordHistory,
+    Requirements, TestAnswers, Unobserved,
+};
+
+mod assessment;
+mod axis;
+mod bode;
+mod condition_source;
+mod drawing;
+mod error;
+#[expect(clippy::module_inception, reason = "the room is named by what it makes")]
+mod figure;
+mod gains;
+mod label_places;
+mod layout;
+mod leads;
+mod paint;
+mod poles;
+mod requirements;
+mod responses;
+mod role;
+mod tables;
+mod thinning;
+
+pub use assessment::*;
+pub use axis::*;
+pub use bode::*;
+pub use condition_source::*;
+pub use drawing::*;
+pub use error::*;
+pub use figure::*;
+pub use gains::*;
+pub use label_places::*;
+pub use layout::*;
+pub use leads::*;
+pub use paint::*;
+pub use poles::*;
+pub use requirements::*;
+pub use responses::*;
+pub use role::*;
+pub use tables::LONG_COLUMNS;
+pub use thinning::{Pixel, thinned};
+
+/// Which of the program's figures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum FigureKind {
+    /// Responses of one condition (Figures 2 and 5).
+    #[default]
+    Bode,
+    /// What the fit sees of them.
+    Error,
+    /// Every response of one condition, small.
+    Overview,
+    /// Net gains against airspeed (Figures 6 and 7).
+    NetGain,
+    /// Gains or delays of the channels (Figures 3 and 4).
+    Channels,
+    /// What the scatter of the net gains is made of.
+    Evidence,
+    /// What the correction is worth (Figures 8 to 19).
+    Assessment,
+    /// Poles of every model of one condition.
+    Poles,
+    /// What delay or lead does in each channel of one condition, to ten times the band.
+    Leads,
+    /// What couplings do to the loop they make, and to the poles of a condition.
+    Couplings,
+    /// Phase delay over bandwidth of the attitude responses.
+    Requirements,
+    /// One response in every condition, coloured by airspeed.
+    Airspeeds,
+}
+
+impl FigureKind {
+    /// Every kind.
+    pub const ALL: [Self; 12] = [
+        Self::Bode,
+        Self::Error,
+        Self::Overview,
+        Self::NetGain,
+        Self::Channels,
+        Self::Evidence,
+        Self::Assessment,
+        Self::Poles,
+        Self::Leads,
+        Self::Couplings,
+        Self::Requirements,
+        Self::Airspeeds,
+    ];
+
+    /// Its name in a command and in the name of a file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bode => "bode",
+            Self::Error => "error",
+            Self::Overview => "overview",
+            Self::NetGain => "net-gain",
+            Self::Channels => "channels",
+            Self::Evidence => "evidence",
+            Self::Assessment => "assessment",
+            Self::Poles => "poles",
+            Self::Leads => "leads",
+            Self::Couplings => "couplings",
+            Self::Requirements => "requirements",
+            Self::Airspeeds => "airspeeds",
+        }
+    }
+
+    /// Whether it is made of error bars, which are then computed for it.
+    pub fn needs_bars(self) -> bool {
+        matches!(self, Self::Evidence | Self::Requirements)
+    }
+
+    /// Whether it has error bars where they are computed, and can do without them.
+    pub fn takes_bars(self) -> bool {
+        matches!(self, Self::NetGain | Self::Channels)
+    }
+
+    /// Whether it is a figure of one condition.
+    pub fn is_of_condition(self) -> bool {
+        matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads)
+    }
+}
+
+/// What models answer over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OverTime {
+    /// To a test input.
+    Test(Arc<TestAnswers>),
+    /// To a flight record, of which the input of this index is drawn.
+    Record(Arc<RecordHistory>, usize),
+}
+
+/// Which figure is wanted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FigureRequest {
+    /// Which.
+    pub kind: FigureKind,
+    /// The responses that it is of, where it is of some.
+    pub pairs: Vec<Pair>,
+    /// The channels that it is of, where it is of channels.
+    pub channels: Vec<Channel>,
+    /// What is shown of channels.
+    pub measure: Measure,
+    /// Over what.
+    pub across: Across,
+    /// What is assessed; the paper's choice where none is given.
+    pub assessed: Option<AssessmentChoice>,
+    /// Which model of each condition, where one of each is shown.
+    pub across_role: AcrossRole,
+    /// How responses are shown.
+    pub bode: BodeOptions,
+    /// What couplings do, where they are shown.
+    pub couplings: Option<Arc<CouplingsAssessment>>,
+    /// What a qualification asks, where that is shown.
+    pub requirements: Option<Arc<Requirements>>,
+    /// What is shown over time in place of bandwidths.
+    pub over_time: Option<OverTime>,
+}
+
+impl FigureRequest {
+    /// A figure of these responses and channels, shown as usual.
+    pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
+        Self { kind, pairs, channels, ..Self::default() }
+    }
+
+    /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
+    /// analysis.
+    pub fn figure(&self, analysis: Option<&Analysis>, condition: Option<&ConditionSource<'_>>) -> Option<Figure> {
+        Some(match self.kind {
+            FigureKind::Bode => bode_figure(condition?, &self.pairs, &self.bode),
+            FigureKind::Error => error_figure(condition?, &self.pairs, &self.bode),
+            FigureKind::Overview => overview_figure(condition?, &self.bode),
+            FigureKind::NetGain => net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs),
+            FigureKind::Channels => {
+                let shown = (self.measure, self.across);
+                channels_figure(analysis?, analysis?.uncertainty.as_deref(), &self.channels, shown)
+            }
+            FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
+            FigureKind::Assessment => {
+                let analysis = analysis?;
+                assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))
+            }
+            FigureKind::Poles => {
+                let condition = condition?;
+                let modes = ConditionModes::of(&condition.curves.condition, &Unobserved).ok()?;
+                let zeros = |id: &ModelId| match self.bode.zeros_of {
+                    Some(pair) => zeros_of_model(condition, pair, id),
+                    None => Vec::new(),
+                };
+                let shifts = condition.analysis.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+                poles_figure(condition, &modes, &self.bode, (&zeros, &shifts))
+            }
+            FigureKind::Leads => leads_figure(condition?, &self.pairs),
+            FigureKind::Requirements => {
+                let study = &analysis?.study;
+                match &self.over_time {
+                    Some(OverTime::Test(answers)) => test_answers_figure(answers, &study.dataset),
+                    Some(OverTime::Record(history, input)) => record_history_figure(history, &study.dataset, *input),
+                    None => {
+                        let requirements = self.requirements.as_deref()?;
+                        requirements_figure(requirements, &study.dataset, &study.requirements.levels)
+                    }
+                }
+            }
+            FigureKind::Couplings => {
+                let shown = condition.map(|of| of.curves.condition.id());
+                return couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit);
+            }
+            FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
+        })
+    }
+}

@@ -1,0 +1,161 @@
+//! A drawing as SVG 1.1: lines as paths, letters as text. Units are points.
+
+use std::fmt::Write;
+
+use gdcm_model::message_text::sanitized;
+
+use crate::figure::{Anchor, Area, Color, Drawing, FONTS, PT_PER_MM, Shape, Stroke, Text, width};
+
+/// Fonts to take where a reader does not have ours, about as wide.
+const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
+
+/// The text of the file.
+pub fn svg(drawing: &Drawing) -> String {
+    let head = format!("xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}", size_attributes(drawing));
+    element(drawing, &head, "frame")
+}
+
+/// The drawing as a part of a page in HTML, which knows the element without a name space. `name` begins the names that it refers
+/// to by: no two of a page may share it.
+pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
+    let label = escaped(&sanitized(&drawing.title));
+    element(drawing, &format!("role=\"img\" aria-label=\"{label}\" {}", size_attributes(drawing)), name)
+}
+
+fn size_attributes(drawing: &Drawing) -> String {
+    let [width, height] = drawing.size;
+    let [width_mm, height_mm] = [width, height].map(|length| number(length / PT_PER_MM));
+    let [width, height] = [width, height].map(number);
+    format!("width=\"{width_mm}mm\" height=\"{height_mm}mm\" viewBox=\"0 0 {width} {height}\"")
+}
+
+fn element(drawing: &Drawing, head: &str, name: &str) -> String {
+    let [width, height] = drawing.size;
+    let mut svg = Svg { text: String::new(), name, clips: 0 };
+    svg.line(&format!(
+        "<svg {head} font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
+        FONTS[0].0,
+    ));
+    svg.line(&format!("<title>{}</title>", escaped(&sanitized(&drawing.title))));
+    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, width, height), Some(Color::WHITE), None));
+    drawing.shapes.iter().for_each(|shape| svg.shape(shape));
+    svg.line("</svg>");
+    svg.text
+}
+
+struct Svg<'a> {
+    text: String,
+    /// What the names of areas begin with.
+    name: &'a str,
+    /// How many areas have been clipped to: their numbers end their names.
+    clips: usize,
+}
+
+impl Svg<'_> {
+    fn line(&mut self, line: &str) {
+        self.text.push_str(line);
+        self.text.push('\n');
+    }
+
+    fn shape(&mut self, shape: &Shape) {
+        match shape {
+            Shape::Path { points, closed, fill, stroke } => {
+                let paint = paint(*fill, *stroke);
+                self.line(&format!("<path d=\"{}\"{paint}/>", path(points, *closed)));
+            }
+            Shape::Circle { center: [x, y], radius, fill, stroke } => {
+                let (x, y, radius) = (number(*x), number(*y), number(*radius));
+                self.line(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{}/>", paint(*fill, *stroke)));
+            }
+            Shape::Text(text) => self.text(text),
+            Shape::Clipped { area, shapes } => {
+                self.clips += 1;
+                let Area { left, top, width, height } = *area;
+                let [x, y, width, height] = [left, top, width, height].map(number);
+                self.line(&format!(
+                    "<clipPath id=\"{0}{1}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
+                     <g clip-path=\"url(#{0}{1})\">",
+                    self.name, self.clips
+                ));
+                shapes.iter().for_each(|shape| self.shape(shape));
+                self.line("</g>");
+            }
+        }
+    }
+
+    fn text(&mut self, text: &Text) {
+        let Text { at: [x, y], words, size_pt, anchor, upright, color } = text;
+        let anchor = match anchor {
+            Anchor::Start => "",
+            Anchor::Middle => " text-anchor=\"middle\"",
+            Anchor::End => " text-anchor=\"end\"",
+        };
+        let (x, y, size) = (number(*x), number(*y), number(*size_pt));
+        let turn = if *upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+        // As long as it was laid out, in whatever letters the reader has.
+        let length = number(size_pt * width(words));
+        let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
+        let (color, words) = (hex(*color), escaped(&sanitized(words)));
+        self.line(&format!(
+            "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}{length}>{words}</text>"
+        ));
+    }
+}
+
+fn path(points: &[[f64; 2]], closed: bool) -> String {
+    let mut text = String::new();
+    for (index, [x, y]) in points.iter().enumerate() {
+        let command = match index {
+            0 => "M",
+            1 => "L",
+            _ => " ",
+        };
+        // A string takes whatever is written.
+        let _ = write!(text, "{command}{} {}", number(*x), number(*y));
+    }
+    if closed {
+        text.push('Z');
+    }
+    text
+}
+
+fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
+    let mut text = format!(" fill=\"{}\"", fill.map_or("none".to_owned(), hex));
+    if let Some(Stroke { color, width_pt, dash }) = stroke {
+        let _ = write!(text, " stroke=\"{}\" stroke-width=\"{}\"", hex(color), number(width_pt));
+        if !dash.pattern_pt().is_empty() {
+            let lengths: Vec<String> = dash.pattern_pt().iter().copied().map(number).collect();
+            let _ = write!(text, " stroke-dasharray=\"{}\"", lengths.join(" "));
+        }
+    }
+    text
+}
+
+fn hex(color: Color) -> String {
+    let [red, green, blue] = color.rgb();
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
+/// A length to a hundredth of a point, which no printer shows; without zeros at its end, and without a minus before nothing.
+fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Words as XML takes them; what XML 1.0 has no place for is left out.
+pub fn escaped(words: &str) -> String {
+    let mut text = String::with_capacity(words.len());
+    for character in words.chars() {
+        match character {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '"' => text.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => {}
+            _ if character.is_control() => {}
+            _ => text.push(character),
+        }
+    }
+    text
+}

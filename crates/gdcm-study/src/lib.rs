@@ -1,0 +1,31 @@
+//! The Gain-Delay Correction Method: an engineer's decisions and their results.
+//!
+//! **Question answered:** given these settings, rejections and constraints, what is the correction, and why?
+//!
+//! A [`Study`](study::Study) holds a dataset and all decisions; an [`Engine`](study::Engine) computes its
+//! [`Analysis`](study::Analysis) in stages and keeps what has not changed. All of it is in [`study`].
+//!
+//! # An example
+//!
+//! A helicopter of one response, `q = g / (s + 1)` times the stick, that answers in flight by a fifth more than its physics model:
+//!
+//! ```
+//! use gdcm_model::dataset::*;
+//! use gdcm_study::study::{Engine, Study, Unobserved};
+//! use nalgebra::dmatrix;
+//!
+//! let lag = |g| StateSpace::new(dmatrix![-1.0], dmatrix![g], dmatrix![1.0], dmatrix![0.0]).map(Dynamics::StateSpace);
+//! let nominal = Model::new("nominal", Origin::Nominal { perturbation: None }, lag(1.0)?);
+//! let flight = Model::new("flight", Origin::Identified { method: None, order: None }, lag(1.2)?);
+//! let hover = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![nominal], vec![flight])?;
+//! let (inputs, outputs) = (vec![Channel::new("LON", "%")], vec![Channel::new("Q", "deg/s")]);
+//! let (on_axis, band) = (PairTable::filled(1, 1, true), Band::new(0.5, 12.0)?);
+//! let header = DatasetHeader { name: "one axis".into(), description: String::new(), inputs, outputs, on_axis, band };
+//! let study = Study::new(Dataset::new(header, vec![hover])?.into());
+//! let analysis = Engine::default().analyze(&study, &Unobserved)?;
+//! let correction = &analysis.condition(ConditionId(1)).ok_or("no result")?.correction;
+//! assert!((correction.net_gain(Pair::new(0, 0)) - 1.2).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod study;

@@ -1,0 +1,273 @@
+//! Models of a study that are other than those of its dataset's file: identified models taken into a condition in their place, and
+//! channels whose models are turned, because one side counts them positive the other way round. They are changed where the study takes
+//! them, so that nothing else has to know of it.
+
+use gdcm_model::dataset::{ChannelSide, ConditionRecord, MeasuredResponse, Origin};
+use gdcm_sysid::identification::Identification;
+
+use super::*;
+
+/// Which models of an identification are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OfferedModels {
+    /// The refined model, its neighbours in order, and the models without each record (M14, section 5).
+    pub refined: bool,
+    /// CT-PBSID without refinement.
+    pub unrefined: bool,
+    /// The measured response itself, with its coherence (M4a).
+    pub measured: bool,
+}
+
+impl OfferedModels {
+    /// The bundle that M14 gives to M5.
+    pub const REFINED: Self = Self { refined: true, unrefined: false, measured: false };
+    /// The same, and CT-PBSID without refinement.
+    pub const WITH_UNREFINED: Self = Self { refined: true, unrefined: true, measured: false };
+    /// The measured response alone.
+    pub const MEASURED: Self = Self { refined: false, unrefined: false, measured: true };
+}
+
+/// Models identified from flight records, and these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdoptedModels {
+    /// The identified bundle of the condition.
+    pub models: Vec<Model>,
+    /// The flight records of the condition.
+    pub records: Vec<ConditionRecord>,
+}
+
+impl AdoptedModels {
+    /// The offered models of an identification of `records`, the recommended one first.
+    pub fn of(found: &Identification, offered: OfferedModels, records: Vec<ConditionRecord>) -> Self {
+        let mut models = Vec::new();
+        if offered.refined {
+            models.extend(std::iter::once(&found.refined).chain(&found.bundle).cloned());
+        }
+        if offered.unrefined {
+            models.push(found.unrefined.clone());
+        }
+        if let Some(response) = found.measured.measured().filter(|_| offered.measured) {
+            let method = Some("local polynomial method".to_owned());
+            let origin = Origin::Identified { method, order: None };
+            let source = found.unrefined.source.clone();
+            models.push(Model { source, ..Model::new("measured", origin, Dynamics::Measured(response)) });
+        }
+        Self { models, records }
+    }
+
+    /// The dataset with these models for the identified bundle of a condition, and these records among its own.
+    ///
+    /// # Errors
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where they cannot be the condition's.
+    pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
+        let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
+        let refused = |why: String| EditRefusal::Models { condition: id, why };
+        let condition = before.with_identified(self.models.clone(), self.records.clone());
+        let condition = condition.map_err(|error| refused(error.to_string()))?;
+        dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
+    }
+}
+
+impl Study {
+    /// The dataset as its file has it, whatever was taken since.
+    pub fn file_dataset(&self) -> &Arc<Dataset> {
+        self.file.as_ref().unwrap_or(&self.dataset)
+    }
+
+    /// The models taken in place of those of the file, condition by condition.
+    pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
+        self.taken.iter().map(|(id, models)| (*id, models))
+    }
+
+    /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
+    pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<AdoptedModels>)]) -> Result<(), EditRefusal> {
+        let mut models = self.taken.clone();
+        models.extend(taken.iter().cloned());
+        self.rebuild(models, self.signs.clone())
+    }
+
+    /// Puts the models of the file back into a condition.
+    pub(super) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
+        let mut models = self.taken.clone();
+        models.remove(&condition);
+        self.rebuild(models, self.signs.clone())
+    }
+
+    /// Turns the models of a channel, or puts them back as they were.
+    pub(super) fn set_sign(&mut self, channel: Channel, of: Option<SignRole>) -> Result<(), EditRefusal> {
+        if !Channel::all_of(&self.dataset).any(|known| known == channel) {
+            return Err(EditRefusal::NoChannel { channel });
+        }
+        let mut signs = self.signs.clone();
+        signs.remove(&channel);
+        signs.extend(of.map(|of| (channel, of)));
+        self.rebuild(self.taken.clone(), signs)
+    }
+
+    /// The dataset of the file with these models in its conditions, then turned.
+    fn rebuild(&mut self, models: BTreeMap<ConditionId, Arc<AdoptedModels>>, signs: Signs) -> Result<(), EditRefusal> {
+        let file = Arc::clone(self.file_dataset());
+        let mut dataset = Arc::clone(&file);
+        for (id, taken) in &models {
+            dataset = Arc::new(taken.put_into(&dataset, *id)?);
+        }
+        self.dataset = turned(&dataset, &signs)?;
+        self.file = (!models.is_empty() || !signs.is_empty()).then_some(file);
+        (self.taken, self.signs) = (models, signs);
+        self.forget_absent_models();
+        Ok(())
+    }
+
+    /// Drops decisions about identified models that the dataset does not have any more, the variants' too.
+    fn forget_absent_models(&mut self) {
+        let dataset = Arc::clone(&self.dataset);
+        let is_there = |id: ConditionId, name: &str| {
+            dataset.condition(id).is_some_and(|condition| condition.position(BundleKind::Identified, name).is_some())
+        };
+        let of_variants = self.variants.iter_mut().map(|variant| &mut Arc::make_mut(variant).choices);
+        for (id, choice) in of_variants.chain([&mut self.choices]).flatten() {
+            choice.identified.retain(|name| is_there(*id, name));
+        }
+    }
+}
+
+impl BundleChoice {
+    fn retain(&mut self, is_there: impl Fn(&str) -> bool) {
+        self.rejected.retain(|name| is_there(name));
+        self.reasons.retain(|name, _| is_there(name));
+        self.pinned = self.pinned.take().filter(|name| is_there(name));
+    }
+}
+
+/// Whose models of a channel are turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SignRole {
+    /// Those of the identified bundles.
+    Identified,
+    /// Those of the physics bundles.
+    Physics,
+    /// All.
+    All,
+}
+
+impl SignRole {
+    /// Every role.
+    pub const EACH: [Self; 3] = [Self::Identified, Self::Physics, Self::All];
+
+    /// Its word in files and options.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Identified => "identified",
+            Self::Physics => "physics",
+            Self::All => "all",
+        }
+    }
+
+    /// The models, in words.
+    pub fn models(self) -> &'static str {
+        match self {
+            Self::Identified => "the identified models",
+            Self::Physics => "the physics models",
+            Self::All => "all models",
+        }
+    }
+
+    /// Whether the models of a bundle are turned.
+    pub fn covers(self, kind: BundleKind) -> bool {
+        self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
+    }
+}
+
+/// The channels that are turned.
+pub type Signs = BTreeMap<Channel, SignRole>;
+
+/// A turned channel as files say it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TurnedChannel {
+    /// Its name.
+    pub channel: String,
+    /// Whether it is an input or an output.
+    pub side: ChannelSide,
+    /// Whose models are turned.
+    pub of: SignRole,
+}
+
+impl TurnedChannel {
+    /// The channel in a dataset, where it has it.
+    pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
+        let (channels, of): (_, fn(usize) -> Channel) = match self.side {
+            ChannelSide::Input => (dataset.inputs(), Channel::Input),
+            ChannelSide::Output => (dataset.outputs(), Channel::Output),
+        };
+        channels.iter().position(|channel| channel.name == self.channel).map(of)
+    }
+}
+
+impl Study {
+    /// The channels that are turned, by their names.
+    pub fn turned_channels(&self) -> Vec<TurnedChannel> {
+        let turned = |(channel, of): (&Channel, &SignRole)| TurnedChannel {
+            channel: channel.name_in(&self.dataset),
+            side: if matches!(channel, Channel::Input(_)) { ChannelSide::Input } else { ChannelSide::Output },
+            of: *of,
+        };
+        self.signs.iter().map(turned).collect()
+    }
+}
+
+/// The dataset with the models of these channels turned: of an output its rows of C and D, of an input its columns of B and D, of
+/// measured responses all of the channel.
+pub(super) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
+    let mut turned = Arc::clone(dataset);
+    for condition in dataset.conditions().iter().filter(|_| !signs.is_empty()) {
+        let refused = |why: String| EditRefusal::Models { condition: condition.id(), why };
+        let models = turned_condition(condition, signs).map_err(refused)?;
+        turned = Arc::new(turned.with_condition(models).map_err(|error| refused(error.to_string()))?);
+    }
+    Ok(turned)
+}
+
+fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
+    let bundle = |kind| -> Result<Vec<Model>, String> {
+        let sign = |channel: Channel| {
+            if signs.get(&channel).is_some_and(|role| role.covers(kind)) { -1.0 } else { 1.0 }
+        };
+        let models = condition.bundle(kind).iter();
+        models.map(|model| Ok(Model { dynamics: turned_dynamics(&model.dynamics, sign)?, ..model.clone() })).collect()
+    };
+    let (physics, identified) = (bundle(BundleKind::Physics)?, bundle(BundleKind::Identified)?);
+    let turned = Condition::new(condition.flight_state().clone(), physics, identified);
+    turned.and_then(|turned| turned.with_records(condition.records().to_vec())).map_err(|error| error.to_string())
+}
+
+fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result<Dynamics, String> {
+    match dynamics {
+        Dynamics::StateSpace(model) => {
+            let (mut b, mut c, mut d) = (model.b().clone(), model.c().clone(), model.d().clone());
+            for input in 0..model.inputs() {
+                b.column_mut(input).scale_mut(sign(Channel::Input(input)));
+                d.column_mut(input).scale_mut(sign(Channel::Input(input)));
+            }
+            for output in 0..model.outputs() {
+                c.row_mut(output).scale_mut(sign(Channel::Output(output)));
+                d.row_mut(output).scale_mut(sign(Channel::Output(output)));
+            }
+            let turned = StateSpace::new(model.a().clone(), b, c, d).map_err(|error| error.to_string())?;
+            Ok(Dynamics::StateSpace(turned.timed(model.timing().clone()).map_err(|error| error.to_string())?))
+        }
+        Dynamics::Measured(response) => {
+            let sign = |pair: Pair| Channel::of(pair).into_iter().map(&sign).product::<f64>();
+            let values = response.values();
+            let re = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.re).collect());
+            let im = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.im).collect());
+            let turned = MeasuredResponse::new(response.omega().to_vec(), &re, &im, response.coherence().cloned());
+            let turned = turned.and_then(|turned| turned.with_estimate(response.estimate()));
+            let turned = turned.map_err(|error| error.to_string())?;
+            Ok(Dynamics::Measured(match response.valid_bands() {
+                Some(bands) => turned.with_valid_bands(bands.clone()).map_err(|error| error.to_string())?,
+                None => turned,
+            }))
+        }
+    }
+}

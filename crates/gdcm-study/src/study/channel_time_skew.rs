@@ -1,0 +1,174 @@
+//! A channel that is logged late in all records alike, told against a physics model (M14, section 10).
+//!
+//! A delay of all records cannot be told from dynamics by the records alone. Against a physics model it can, where its responses lag in
+//! proportion to frequency and those of the other channels do not.
+//!
+//! ```text
+//! 1  of each response that is coherent over half of the band:   phi = arg(measured / physics), unwrapped
+//!       d = -sum W omega phi / sum W omega^2,   W = 1 / (var phi + (3 deg)^2)
+//! 2  of each output (a row of responses) and input (a column):
+//!       common = median of d over all other responses,   s = 1.48 median |d - common| over them
+//!       delay = median of d over its own - common
+//! 3  it is late where |delay| > t and |d - common - delay| <= t for each of its own, t = max(5 ms, 2.5 s),
+//!    and the delay explains four fifths of sum W (phi + omega common)^2
+//! 4  of two channels each is late where the other is early: the one with the least |common| is named
+//! ```
+//!
+//! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
+
+use gdcm_model::dataset::ChannelSide;
+use gdcm_model::response::unwrap;
+use gdcm_sysid::identification::{ResponseEstimate, Signal, TRUSTED_COHERENCE};
+
+use super::*;
+
+/// Share of the points in the band at which a response is coherent, at least.
+const LEAST_SHOWN: f64 = 0.5;
+/// Standard deviation that a physics model's phase has at least \[rad\].
+const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
+/// The least delay that is told \[s\].
+const LEAST_S: f64 = 5e-3;
+/// Scatter of the other responses beyond which a delay stands out.
+const STANDS_OUT: f64 = 2.5;
+/// Standard deviation of a normal scatter over its median modulus.
+const OF_MEDIAN: f64 = 1.4826;
+/// Share of the squared phase that a delay leaves at most.
+const MOST_LEFT: f64 = 0.2;
+
+/// A channel that seems to be logged late, or early, in all records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChannelTimeSkew {
+    /// Input or output.
+    pub role: ChannelSide,
+    /// Which, counted from 0.
+    pub index: usize,
+    /// How late \[s\]; negative when it is early.
+    pub delay_s: f64,
+}
+
+impl ChannelTimeSkew {
+    /// The channel whose delay explains why a measured response is late against that of a physics model; none where none stands out.
+    pub fn of(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
+        let lags = lags(measured, band, physics)?;
+        let (outputs, inputs) = measured.points.first()?.response.shape();
+        let rows = (0..outputs).map(|index| (ChannelSide::Output, index, inputs));
+        let columns = (0..inputs).map(|index| (ChannelSide::Input, index, outputs));
+        let suspects: Vec<Suspect> = rows.chain(columns).filter_map(|of| Suspect::of(&lags, of)).collect();
+        let most = suspects.iter().map(|suspect| suspect.explained).fold(0.0, f64::max);
+        let suspects = suspects.into_iter().filter(|suspect| suspect.explained >= 0.5 * most);
+        suspects.min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs())).map(|suspect| suspect.channel)
+    }
+
+    /// The same against the nominal physics model of a condition.
+    pub fn of_condition(measured: &ResponseEstimate, band: [f64; 2], condition: &Condition) -> Option<Self> {
+        let nominal = condition.bundle(BundleKind::Physics).get(condition.nominal())?;
+        Self::of(measured, band, &nominal.dynamics)
+    }
+
+    /// The channel of a dataset.
+    pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
+        let channels = if self.role == ChannelSide::Input { dataset.inputs() } else { dataset.outputs() };
+        let name = channels.get(self.index)?.name.clone();
+        Some(Signal { role: self.role, index: self.index, name })
+    }
+
+    /// What is said of it; `name` is the channel's, `physics` the physics model's.
+    pub fn words(&self, name: &str, physics: &str) -> String {
+        let (ms, how) = (telling(s_to_ms(self.delay_s.abs()), 0), if self.delay_s < 0.0 { "early" } else { "late" });
+        format!(
+            "{name} seems to be logged {ms} ms {how} in all records: against the physics model \"{physics}\" its responses differ as by a \
+             delay, and the others do not. That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
+             correction has a delay for it"
+        )
+    }
+}
+
+/// How late one response is against that of a physics model.
+struct Lag {
+    pair: Pair,
+    delay_s: f64,
+    /// Frequency \[rad/s\], phase \[rad\] and weight.
+    phase: Vec<[f64; 3]>,
+}
+
+impl Lag {
+    /// `sum W (phi + omega d)^2`.
+    fn left(&self, delay_s: f64) -> f64 {
+        self.phase.iter().map(|[omega, phase, weight]| weight * (phase + omega * delay_s).powi(2)).sum()
+    }
+}
+
+/// The lags of the responses that are coherent over half of the band; none where the physics model has none on these frequencies.
+fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
+    let points: Vec<_> = measured.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega)).collect();
+    let (first, last) = (points.first()?, points.last()?);
+    let grid = FrequencyGrid::logarithmic(Band::new(first.omega, last.omega).ok()?, points.len());
+    let same = grid.len() == points.len()
+        && grid.omega().iter().zip(&points).all(|(omega, point)| (omega / point.omega - 1.0).abs() < 1e-9);
+    let physics = Some(FrequencyResponse::of(physics, &grid)).filter(|_| same)?;
+    let (outputs, inputs) = first.response.shape();
+    let lag = |pair: Pair| {
+        let at = (pair.output, pair.input);
+        let modelled = physics.curve(pair);
+        let trusted = points.iter().zip(modelled).filter(|(point, value)| {
+            point.partial_coherence[at] >= TRUSTED_COHERENCE && value.norm() > 0.0 && point.response[at].norm() > 0.0
+        });
+        let (mut angles, mut others) = (Vec::new(), Vec::new());
+        for (point, value) in trusted {
+            angles.push((point.response[at] / value).arg());
+            let variance = 0.5 * point.variance[at] / point.response[at].norm_sqr();
+            others.push((point.omega, 1.0 / (variance + PHYSICS_SD * PHYSICS_SD)));
+        }
+        if (angles.len() as f64) < LEAST_SHOWN * points.len() as f64 {
+            return None;
+        }
+        unwrap(&mut angles);
+        let phase: Vec<[f64; 3]> =
+            angles.iter().zip(&others).map(|(phase, (omega, weight))| [*omega, *phase, *weight]).collect();
+        let sum = |of: fn(&[f64; 3]) -> f64| phase.iter().map(of).sum::<f64>();
+        let delay_s =
+            -sum(|[omega, phase, weight]| weight * omega * phase) / sum(|[omega, _, weight]| weight * omega * omega);
+        delay_s.is_finite().then_some(Lag { pair, delay_s, phase })
+    };
+    let pairs = (0..outputs).flat_map(|output| (0..inputs).map(move |input| Pair { output, input }));
+    Some(pairs.filter_map(lag).collect())
+}
+
+/// A channel whose delay stands out.
+struct Suspect {
+    channel: ChannelTimeSkew,
+    /// What the others have in common \[s\].
+    common_s: f64,
+    /// The squared phase that its delay explains.
+    explained: f64,
+}
+
+impl Suspect {
+    /// A channel with so many responses, if it is late.
+    fn of(lags: &[Lag], (role, index, responses): (ChannelSide, usize, usize)) -> Option<Self> {
+        let is_own = |lag: &&Lag| match role {
+            ChannelSide::Output => lag.pair.output == index,
+            ChannelSide::Input => lag.pair.input == index,
+        };
+        let (own, others): (Vec<&Lag>, Vec<&Lag>) = lags.iter().partition(is_own);
+        if own.len() < 2 || 2 * own.len() <= responses || others.len() < 2 {
+            return None;
+        }
+        let middle = |of: &mut dyn Iterator<Item = f64>| median(&mut of.collect::<Vec<f64>>());
+        let common_s = middle(&mut others.iter().map(|lag| lag.delay_s));
+        let scatter_s = OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - common_s).abs()));
+        let delay_s = middle(&mut own.iter().map(|lag| lag.delay_s)) - common_s;
+        let tolerance_s = LEAST_S.max(STANDS_OUT * scatter_s);
+        let agree = own.iter().all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
+        let left = |delay_s: f64| own.iter().map(|lag| lag.left(delay_s)).sum::<f64>();
+        let (before, after) = (left(common_s), left(common_s + delay_s));
+        let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
+        // The responses to an input that is logged late come too early.
+        let delay_s = if role == ChannelSide::Output { delay_s } else { -delay_s };
+        is_late.then_some(Self {
+            channel: ChannelTimeSkew { role, index, delay_s },
+            common_s,
+            explained: before - after,
+        })
+    }
+}

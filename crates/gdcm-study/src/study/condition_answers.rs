@@ -1,0 +1,263 @@
+//! What the models of one condition answer, to be drawn (M17.2): to the sticks of a flight record, with the corridors about flight, and to a
+//! test input, where no record is there to compare them with.
+
+use gdcm_method::requirements::{ChannelTolerance, RecordCheck, TestInput, Tolerance};
+
+use super::*;
+
+/// One quantity of a record: flown, and as each model answers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuantityHistory {
+    /// The row of the table of tolerances.
+    pub tolerance: Tolerance,
+    /// Index of the output that it is read from.
+    pub output: usize,
+    /// Unit of what is compared.
+    pub unit: String,
+    /// Whether the output is on-axis to the input that moved most; none where that is not known.
+    pub on_axis: Option<bool>,
+    /// What each model gives, in windows that are the same for all of them.
+    pub models: Vec<(RequirementRole, RecordCheck)>,
+}
+
+/// One record against the tolerances.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordHistory {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Name of the record.
+    pub record: String,
+    /// Whether the identified models were kept from it.
+    pub held_out: bool,
+    /// The record, in the units of the dataset's channels.
+    pub flight: Shared<FlightRecord>,
+    /// Each row of the table that can be applied.
+    pub quantities: Vec<QuantityHistory>,
+    /// In words what is not compared, and why.
+    pub missing: Vec<String>,
+}
+
+impl RecordHistory {
+    /// Share of time inside, the largest excess and when, of each quantity and model; off the axis, whether the trend is correct.
+    pub fn table(&self) -> Table {
+        let columns = [
+            "quantity",
+            "tolerance",
+            "entry",
+            "model",
+            "inside [%]",
+            "largest excess",
+            "at [s]",
+            "off-axis trend",
+            "correlation",
+        ];
+        let held_out = if self.held_out { ", held out" } else { "" };
+        let mut table = Table::new(format!("{}{held_out}: within tolerances", self.record), columns);
+        for of in &self.quantities {
+            for (role, check) in &of.models {
+                let worst = check.worst();
+                let beyond = worst.filter(|worst| worst.largest_excess > 0.0);
+                let correlation = check.correlation();
+                table.row([
+                    of.tolerance.quantity.clone(),
+                    of.tolerance.words(),
+                    of.tolerance.entry.clone(),
+                    role.name().to_owned(),
+                    percent(Some(check.share_inside())),
+                    beyond
+                        .map_or("none".to_owned(), |worst| format!("{} {}", telling(worst.largest_excess, 2), of.unit)),
+                    beyond.map_or(String::new(), |worst| telling(worst.largest_excess_at_s, 1)),
+                    Trend::of(correlation, of.on_axis).map_or("", Trend::name).to_owned(),
+                    correlation.map_or(String::new(), |of| telling(of, 2).replace('-', "\u{2212}")),
+                ]);
+            }
+        }
+        table
+    }
+}
+
+/// A record of a condition against the tolerances of the study, beside the live answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordHistoryJob {
+    /// The analysis.
+    pub analysis: Shared<Analysis>,
+    /// The condition.
+    pub condition: ConditionId,
+    /// The record.
+    pub record: HistoryRecord,
+    /// How its channels are prepared.
+    pub preparation: Preparation,
+    /// The tolerances.
+    pub tolerances: ToleranceTable,
+}
+
+impl RecordHistoryJob {
+    fn found(&self, executor: &dyn Executor) -> Result<RecordHistory, String> {
+        let result = self.analysis.result(self.condition)?;
+        let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..self.preparation.clone() };
+        let segments = segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
+        let (mut missing, mut models) = (Vec::new(), Vec::new());
+        for role in RequirementRole::ALL {
+            match self.analysis.role_model(result, role) {
+                Ok(model) => models.push((role, model)),
+                Err(why) => missing.push(format!("{} model: {why}", role.name())),
+            }
+        }
+        let settings = common_windows(models.iter().map(|(_, model)| model), &segments);
+        let mut answers = Vec::new();
+        for (role, model) in &models {
+            match validate(model, &segments, &settings, executor) {
+                Ok(validation) => answers.push((*role, validation)),
+                Err(why) => missing.push(format!("{} model: {why}", role.name())),
+            }
+        }
+        let mut not_applied = Vec::new();
+        let comparer = Comparer::of(&self.analysis, &self.tolerances, &mut not_applied);
+        missing.extend(not_applied.into_iter().map(|of| of.why));
+        let moved = comparer.moved_input(&segments);
+        let quantity = |(tolerance, of_channel): &(&Tolerance, ChannelTolerance)| {
+            let check = |(role, validation): &(RequirementRole, Validation)| {
+                let checks = RecordCheck::of_windows(&validation.windows, of_channel).ok()?;
+                Some((*role, checks.into_iter().next()?))
+            };
+            QuantityHistory {
+                tolerance: Tolerance::clone(tolerance),
+                output: of_channel.output,
+                unit: of_channel.unit.clone(),
+                on_axis: comparer.is_on_axis(of_channel.output, moved),
+                models: answers.iter().filter_map(check).collect(),
+            }
+        };
+        let quantities = comparer.rows.iter().map(quantity).collect();
+        let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
+        let flight = self.record.flight.clone();
+        Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })
+    }
+}
+
+impl Job for RecordHistoryJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    /// In words why there is none.
+    type Output = Result<Arc<RecordHistory>, String>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let found = self.found(executor.as_ref()).map(Arc::new);
+        if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+    }
+}
+
+/// Time shown, as a multiple of the duration of the test.
+const SHOWN: f64 = 5.0;
+/// The least time shown \[s\].
+const LEAST_SHOWN_S: f64 = 10.0;
+/// Sample times that the time shown has.
+const STEPS: usize = 1000;
+
+/// What the models of a condition answer to a test input from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswers {
+    /// The condition.
+    pub condition: ConditionId,
+    /// Index of the input that is moved.
+    pub input: usize,
+    /// How it is moved.
+    pub test: TestInput,
+    /// Sample time \[s\]; the first sample is at 0 s.
+    pub sample_time_s: f64,
+    /// The input at every sample, in its unit.
+    pub signal: Vec<f64>,
+    /// Outputs of each model, samples x outputs, in their units; in words why there are none.
+    pub models: Vec<(RequirementRole, Result<DMatrix<f64>, String>)>,
+}
+
+impl TestAnswers {
+    fn of(job: &TestAnswersJob, executor: &dyn Executor) -> Result<Self, String> {
+        let TestAnswersJob { analysis, condition, input, test } = job;
+        let (condition, input) = (*condition, *input);
+        let result = analysis.result(condition)?;
+        let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
+        let answer = |role: &RequirementRole| {
+            let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
+            test.answer(&model, input, sample_time_s, STEPS + 1).map_err(|error| error.to_string())
+        };
+        let answers = each(executor, &RequirementRole::ALL, answer);
+        let signal = test.signal(sample_time_s, STEPS + 1);
+        let models = RequirementRole::ALL.into_iter().zip(answers).collect();
+        Ok(Self { condition, input, test: *test, sample_time_s, signal, models })
+    }
+
+    /// The times of the samples \[s\].
+    pub fn time_s(&self) -> Vec<f64> {
+        (0..self.signal.len()).map(|n| n as f64 * self.sample_time_s).collect()
+    }
+}
+
+/// The answers of the models of a condition to the test input of the study, beside the live answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TestAnswersJob {
+    /// The analysis.
+    pub analysis: Shared<Analysis>,
+    /// The condition.
+    pub condition: ConditionId,
+    /// Index of the input that is moved.
+    pub input: usize,
+    /// How it is moved.
+    pub test: TestInput,
+}
+
+impl Job for TestAnswersJob {
+    /// Who carries out its pieces.
+    type Tools = Box<dyn Executor>;
+    /// In words why there are none.
+    type Output = Result<Arc<TestAnswers>, String>;
+
+    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+        let found = TestAnswers::of(self, executor.as_ref()).map(Arc::new);
+        if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::couplings_tests::EXAMPLE;
+    use super::*;
+    use crate::study::Unobserved;
+    use gdcm_method::correction::Pade;
+    use gdcm_method::requirements::TestInputShape;
+    use gdcm_model::dataset::BundleKind;
+
+    fn answers(test: TestInput) -> TestAnswers {
+        let analysis = EXAMPLE.analysis.clone();
+        let condition = *analysis.conditions.keys().next().unwrap();
+        let job = TestAnswersJob { analysis: Arc::new(analysis).into(), condition, input: 1, test };
+        let executor: Box<dyn Executor> = Box::new(gdcm_model::executor::Sequential);
+        TestAnswers::clone(&job.run(&mut { executor }, &Unobserved).unwrap().unwrap())
+    }
+
+    #[test]
+    fn every_model_answers_in_proportion_to_the_size_of_the_test() {
+        let test = TestInput { shape: TestInputShape::Doublet, size: 1.0, duration_s: 1.0 };
+        let (one, three) = (answers(test), answers(TestInput { size: 3.0, ..test }));
+        for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
+            let (small, large) = (small.as_ref().unwrap(), large.as_ref().unwrap());
+            // Linear models; rounding of a thousand steps.
+            assert!((3.0 * small - large).amax() <= 1e-9 * large.amax(), "{role:?}");
+            assert!(small.amax() > 0.0, "{role:?}");
+        }
+    }
+
+    #[test]
+    fn the_corrected_model_answers_as_that_which_is_exported() {
+        let test = TestInput { shape: TestInputShape::Step, size: 2.0, duration_s: 3.0 };
+        let found = answers(test);
+        let result = EXAMPLE.analysis.conditions[&found.condition].as_ref().unwrap();
+        let physics = result.condition.model(BundleKind::Physics, result.representative_name(BundleKind::Physics));
+        let physics = physics.unwrap().state_space().unwrap();
+        let exported = result.corrected_model(physics, &result.correction, Pade::default()).unwrap().model;
+        let expected = test.answer(&exported, 1, found.sample_time_s, found.signal.len()).unwrap();
+        let of = |role| found.models.iter().find(|of| of.0 == role).unwrap().1.as_ref().unwrap();
+        assert_eq!(*of(RequirementRole::Corrected), expected);
+        assert_ne!(*of(RequirementRole::Physics), expected);
+    }
+}

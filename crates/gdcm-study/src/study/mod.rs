@@ -1,0 +1,412 @@
+//! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
+
+mod analysis;
+mod assessment_table;
+mod caution;
+mod changed_models;
+mod channel_time_skew;
+mod comparison;
+mod condition_answers;
+mod condition_responses;
+mod condition_stages;
+mod convention_doubt;
+mod couplings_assessment;
+mod couplings_words;
+mod derivation;
+mod differences;
+mod edit;
+mod engine;
+mod execution;
+mod fitted_couplings;
+mod job;
+mod lead_compensation;
+mod remark;
+mod required_bandwidth;
+mod required_modes;
+mod requirements;
+mod requirements_tables;
+mod schedule_losses;
+pub mod setting;
+mod setting_row;
+mod settings;
+mod substitutions;
+mod table;
+mod time_histories;
+mod time_history_tables;
+mod uncertainty;
+
+// What most files of the room speak of: they take it from here, with one another's types, by `use super::*`.
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::{Arc, LazyLock};
+
+use nalgebra::{Complex, DMatrix};
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::{
+    Channel, ChannelCorrection, ChannelLeads, Delta, GainBounds, GainObjective, GainSource, Pade, Problem,
+    ProblemError, ProofBudget, Quantity, Solution, delta_gains,
+};
+use gdcm_method::couplings::CouplingError;
+use gdcm_method::fidelity::{Cost, CostAverage, Mismatch};
+use gdcm_method::requirements::{ModeVerdict, ToleranceTable};
+use gdcm_method::schedule::{CostChange, Schedule, ScheduleError, ScheduledQuantity, SecondVariable};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{
+    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Pair, PairTable, StateSpace,
+};
+use gdcm_model::executor::{Executor, Sequential, each};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, PreparedModel, median};
+use gdcm_model::units::{number, s_to_ms, signed, telling};
+use gdcm_sysid::identification::{FlightRecord, Preparation, Validation, segments_of, validate};
+
+pub use self::derivation::{Derivation, ExplainTarget, derivation};
+pub use self::setting::SETTINGS;
+pub use self::{
+    analysis::*, assessment_table::*, caution::*, changed_models::*, channel_time_skew::*, comparison::*,
+    condition_answers::*, condition_responses::*, convention_doubt::*, couplings_assessment::*, couplings_words::*,
+    differences::*, edit::*, engine::*, execution::*, fitted_couplings::*, job::*, lead_compensation::*, remark::*,
+    required_bandwidth::*, required_modes::*, requirements::*, requirements_tables::*, schedule_losses::*,
+    setting_row::*, settings::*, substitutions::*, table::*, time_histories::*, uncertainty::*,
+};
+use self::{condition_stages::*, time_history_tables::*};
+pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+
+/// The engineer's choices in one bundle.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct BundleChoice {
+    /// Names of the rejected models.
+    pub rejected: BTreeSet<String>,
+    /// Why, in the engineer's words, for those of them where that was said; studies of older programs do not say it.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub reasons: BTreeMap<String, String>,
+    /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
+    pub pinned: Option<String>,
+}
+
+impl BundleChoice {
+    /// Puts a model back; the reason goes with the rejection.
+    pub(super) fn restore(&mut self, name: &str) {
+        self.rejected.remove(name);
+        self.reasons.remove(name);
+    }
+}
+
+/// The engineer's choices in one condition.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct ConditionChoice {
+    /// Choices among the physics models.
+    pub physics: BundleChoice,
+    /// Choices among the identified models.
+    pub identified: BundleChoice,
+    /// Whether the condition enters the schedule.
+    pub scheduled: bool,
+    /// Whether the condition is held out: analysed and assessed, but kept from the schedule, which it is to judge.
+    pub held_out: bool,
+}
+
+impl Default for ConditionChoice {
+    fn default() -> Self {
+        Self { physics: BundleChoice::default(), identified: BundleChoice::default(), scheduled: true, held_out: false }
+    }
+}
+
+impl ConditionChoice {
+    /// Puts every model of both bundles back.
+    pub(super) fn restore_all(&mut self) {
+        for choice in [&mut self.physics, &mut self.identified] {
+            choice.rejected.clear();
+            choice.reasons.clear();
+        }
+    }
+
+    /// What of the choices an analysis depends on: not the words that they were explained with.
+    pub(super) fn without_reasons(&self) -> Self {
+        let mut choice = self.clone();
+        choice.physics.reasons.clear();
+        choice.identified.reasons.clear();
+        choice
+    }
+
+    /// What of the choices the comparison of the models depends on.
+    pub(super) fn of_models(&self) -> Self {
+        Self { scheduled: true, held_out: false, ..self.without_reasons() }
+    }
+
+    /// Whether the schedule is made of the condition: chosen for it, and not held out.
+    pub fn is_in_schedule(&self) -> bool {
+        self.scheduled && !self.held_out
+    }
+
+    /// The choices in one bundle.
+    pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
+        kind.pick(&self.physics, &self.identified)
+    }
+
+    /// The choices in one bundle, to change.
+    pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
+        kind.pick(&mut self.physics, &mut self.identified)
+    }
+}
+
+/// A study: a dataset, and every decision about it. What is saved, and what undo goes back over.
+#[derive(Clone, Debug)]
+pub struct Study {
+    /// The models.
+    pub dataset: Arc<Dataset>,
+    /// Every setting that changes a result.
+    pub settings: Settings,
+    /// Choices in each condition of the dataset.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+    /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
+    /// them.
+    pub variants: Vec<Arc<Variant>>,
+    /// The channels whose models are turned: in `dataset` they are turned already.
+    pub signs: Signs,
+    /// What requirements are asked with. No correction depends on it.
+    pub requirements: Arc<RequirementSettings>,
+    /// Models taken in place of those of the dataset's file; `dataset` has them.
+    pub(super) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
+    /// The dataset as its file has it, where models are taken or turned.
+    pub(super) file: Option<Arc<Dataset>>,
+}
+
+impl PartialEq for Study {
+    /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
+    fn eq(&self, other: &Self) -> bool {
+        let decisions = (&self.settings, &self.choices, &self.variants, &self.signs, &self.requirements)
+            == (&other.settings, &other.choices, &other.variants, &other.signs, &other.requirements);
+        decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
+    }
+}
+
+impl Study {
+    /// The study of a dataset before any decision.
+    pub fn new(dataset: Arc<Dataset>) -> Self {
+        let settings = Settings::of(&dataset);
+        let choices = dataset.ids().map(|id| (id, ConditionChoice::default())).collect();
+        Self {
+            dataset,
+            settings,
+            choices,
+            variants: Vec::new(),
+            signs: Signs::new(),
+            requirements: Arc::default(),
+            taken: BTreeMap::new(),
+            file: None,
+        }
+    }
+
+    /// The choices in one condition; those of a condition that the dataset does not have are none.
+    pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
+        static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);
+        self.choices.get(&condition).unwrap_or(&NONE)
+    }
+
+    /// Whether a model is rejected.
+    pub fn is_rejected(&self, id: &ModelId) -> bool {
+        self.choice(id.condition).bundle(id.bundle).rejected.contains(&id.name)
+    }
+
+    /// Why a model is rejected, where the engineer has said so.
+    pub fn reason(&self, id: &ModelId) -> Option<&str> {
+        self.choice(id.condition).bundle(id.bundle).reasons.get(&id.name).map(String::as_str)
+    }
+
+    /// Names of the rejected models of one condition in file order, the physics bundle first.
+    pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
+        let of = |kind| {
+            let rejected = &self.choice(condition).bundle(kind).rejected;
+            let models = self.dataset.condition(condition).map_or(&[][..], |found| found.bundle(kind));
+            models.iter().map(|model| model.name.as_str()).filter(|name| rejected.contains(*name))
+        };
+        BundleKind::BOTH.into_iter().flat_map(of).collect()
+    }
+}
+
+/// Characters that the name of a variant may have.
+pub const LONGEST_VARIANT_NAME: usize = 60;
+
+/// All decisions of a study at one time, under a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// The name, unique in its study.
+    pub name: String,
+    /// Every setting.
+    pub settings: Settings,
+    /// Choices in each condition.
+    pub choices: BTreeMap<ConditionId, ConditionChoice>,
+}
+
+impl Study {
+    /// The variant of this name.
+    pub fn variant(&self, name: &str) -> Option<&Variant> {
+        self.variants.iter().find(|variant| variant.name == name).map(Arc::as_ref)
+    }
+
+    /// The study with the decisions of one of its variants in place of the present ones, and no variants of its own: what is
+    /// analysed to compare them.
+    pub fn of_variant(&self, name: &str) -> Option<Study> {
+        let Variant { settings, choices, .. } = self.variant(name)?;
+        let (settings, choices) = (settings.clone(), choices.clone());
+        Some(Study { settings, choices, variants: Vec::new(), ..self.clone() })
+    }
+
+    pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let name = self.new_variant_name(name)?;
+        let (settings, choices) = (self.settings.clone(), self.choices.clone());
+        self.variants.push(Arc::new(Variant { name, settings, choices }));
+        Ok(())
+    }
+
+    pub(super) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(name)?;
+        let Variant { settings, choices, .. } = self.variants[index].as_ref();
+        (self.settings, self.choices) = (settings.clone(), choices.clone());
+        Ok(())
+    }
+
+    pub(super) fn remove_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(name)?;
+        self.variants.remove(index);
+        Ok(())
+    }
+
+    pub(super) fn rename_variant(&mut self, from: &str, to: &str) -> Result<(), EditRefusal> {
+        let index = self.variant_index(from)?;
+        if from == to.trim() {
+            return Ok(());
+        }
+        let name = self.new_variant_name(to)?;
+        self.variants[index] = Arc::new(Variant { name, ..self.variants[index].as_ref().clone() });
+        Ok(())
+    }
+
+    fn variant_index(&self, name: &str) -> Result<usize, EditRefusal> {
+        let index = self.variants.iter().position(|variant| variant.name == name);
+        index.ok_or_else(|| EditRefusal::NoVariant { name: name.to_owned() })
+    }
+
+    fn new_variant_name(&self, name: &str) -> Result<String, EditRefusal> {
+        let name = name.trim();
+        check_length("name of a variant", name, LONGEST_VARIANT_NAME)?;
+        match (name.is_empty(), self.variant(name)) {
+            (true, _) => Err(EditRefusal::VariantWithoutName),
+            (_, Some(_)) => Err(EditRefusal::VariantExists { name: name.to_owned() }),
+            (_, None) => Ok(name.to_owned()),
+        }
+    }
+}
+
+/// Steps kept; a snapshot is a few kilobytes, for the models are shared.
+const MOST_STEPS: usize = 500;
+
+#[derive(Clone, Debug)]
+struct Step<B> {
+    label: String,
+    study: Study,
+    beside: B,
+}
+
+/// What undo and redo go back over: whole studies, each with the label of the decision between it and the next.
+///
+/// `B` is what a step changes beside the study: the state of it on the other side of the step, which undo and redo exchange for the
+/// present one. It is `B::default()`, which changes nothing, where the decision is one about the study.
+#[derive(Clone, Debug)]
+pub struct History<B = ()> {
+    past: Vec<Step<B>>,
+    future: Vec<Step<B>>,
+    /// What the last decision took from the future.
+    lost: Vec<Step<B>>,
+    /// The last decision, while the next may still be a part of it (a slider being dragged).
+    open: Option<Edit>,
+}
+
+impl<B> Default for History<B> {
+    fn default() -> Self {
+        Self { past: Vec::new(), future: Vec::new(), lost: Vec::new(), open: None }
+    }
+}
+
+impl<B: Default> History<B> {
+    /// Keeps `before`, the study that `edit` is about to change (or has just changed).
+    ///
+    /// A decision that continues the last one (see [`Edit::continues`]) adds no step until [`History::seal`].
+    pub fn record(&mut self, before: Study, edit: &Edit) {
+        let lost = std::mem::take(&mut self.future);
+        if self.open.as_ref().is_some_and(|open| edit.continues(open)) {
+            return;
+        }
+        self.lost = lost;
+        self.push(Step { label: edit.label(&before), study: before, beside: B::default() });
+        self.open = Some(edit.clone());
+    }
+
+    /// Keeps a decision that leaves the study as it is: `before` is what it changed beside the study, as that was.
+    pub fn record_beside(&mut self, study: Study, label: String, before: B) {
+        self.lost = std::mem::take(&mut self.future);
+        self.push(Step { label, study, beside: before });
+        self.open = None;
+    }
+
+    /// Keeps `before`, the study of the dataset as it was before it was read again.
+    pub fn record_reload(&mut self, before: Study, label: String) {
+        self.future.clear();
+        self.push(Step { label, study: before, beside: B::default() });
+        self.open = None;
+    }
+
+    fn push(&mut self, step: Step<B>) {
+        if self.past.len() == MOST_STEPS {
+            self.past.remove(0);
+        }
+        self.past.push(step);
+    }
+
+    /// Ends the decision being taken: the slider was let go.
+    pub fn seal(&mut self) {
+        self.open = None;
+    }
+
+    /// The study before the last decision, given the study as it is now; `exchange` puts what is beside it back, and gives that as
+    /// it is now.
+    pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
+        let step = self.past.pop()?;
+        self.open = None;
+        self.future.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
+        Some(step.study)
+    }
+
+    /// The study before the last decision, as if that had never been taken, where it was `edit`: it cannot be brought back,
+    /// and those that it took from the future can again.
+    pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
+        if self.open.as_ref() != Some(edit) {
+            return None;
+        }
+        let step = self.past.pop()?;
+        self.open = None;
+        self.future = std::mem::take(&mut self.lost);
+        Some(step.study)
+    }
+
+    /// The study after the last decision taken back, given the study as it is now; `exchange` as in [`History::undo`].
+    pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
+        let step = self.future.pop()?;
+        self.open = None;
+        self.past.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
+        Some(step.study)
+    }
+
+    /// What [`History::undo`] would take back, in a few words.
+    pub fn undo_label(&self) -> Option<&str> {
+        self.past.last().map(|step| step.label.as_str())
+    }
+
+    /// What [`History::redo`] would bring back, in a few words.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.future.last().map(|step| step.label.as_str())
+    }
+}
+
+#[cfg(test)]
+mod couplings_tests;

@@ -1,0 +1,419 @@
+//! What a row of the table of settings says, and what can be done with it: give it a value, refuse one, tell it, read it.
+
+use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use gdcm_model::response::LeadOrder;
+use gdcm_model::units::six_digits;
+
+use super::*;
+
+/// One setting: a row of [`SETTINGS`].
+#[derive(Debug)]
+pub struct Setting {
+    /// Its name in running text: "α of the gains".
+    pub name: &'static str,
+    /// Its key in the settings of files; a dot leads into an object: "lead.n".
+    pub key: &'static str,
+    /// Its option of the command line: "--alpha".
+    pub option: &'static str,
+    /// The word that the option stands for where no value follows it; none where one has to follow.
+    pub bare: Option<&'static str>,
+    /// What it means, in a sentence.
+    pub help: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// What it may be.
+    pub kind: Kind,
+    /// How the window shows it.
+    pub control: Control,
+}
+
+/// The unit of a setting in files and on a command line, and that in which people read it.
+#[derive(Clone, Copy, Debug)]
+pub struct Unit {
+    /// In files.
+    pub file: &'static str,
+    /// For people.
+    pub shown: &'static str,
+    /// How many of the latter are one of the former.
+    pub scale: f64,
+}
+
+/// What a setting may be, and the field of [`Settings`] that holds it.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// A number within a range.
+    Number {
+        /// Least and greatest.
+        range: [f64; 2],
+        /// Whether it is a whole number.
+        whole: bool,
+        /// Its value.
+        get: fn(&Settings) -> f64,
+        /// Changes it.
+        set: fn(&mut Settings, f64),
+    },
+    /// A number within a range, or nothing.
+    Optional {
+        /// Least and greatest.
+        range: [f64; 2],
+        /// The word that stands for nothing on a command line, and in a sentence.
+        nothing: [&'static str; 2],
+        /// The number that "on" stands for, where that is one of its words.
+        on: Option<f64>,
+        /// Its value.
+        get: fn(&Settings) -> Option<f64>,
+        /// Changes it.
+        set: fn(&mut Settings, Option<f64>),
+    },
+    /// Two numbers, the lower and the upper end, within a range; or nothing.
+    Range {
+        /// Least and greatest.
+        range: [f64; 2],
+        /// The words for nothing, where it may be nothing.
+        nothing: Option<[&'static str; 2]>,
+        /// The names of the two ends in the window.
+        ends: [&'static str; 2],
+        /// Its value.
+        get: fn(&Settings) -> Option<[f64; 2]>,
+        /// Changes it.
+        set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
+    },
+    /// Yes or no.
+    Flag {
+        /// What no and yes are, in a sentence.
+        words: [&'static str; 2],
+        /// Its value.
+        get: fn(&Settings) -> bool,
+        /// Changes it.
+        set: fn(&mut Settings, bool),
+    },
+    /// One of several.
+    Choice {
+        /// Each of them: its word on the command line, that in the window, and what it means.
+        words: &'static [[&'static str; 3]],
+        /// The index of the one chosen.
+        get: fn(&Settings) -> usize,
+        /// Chooses another.
+        set: fn(&mut Settings, usize),
+    },
+}
+
+/// How the window shows a setting.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    /// Where its control stands.
+    pub place: Place,
+    /// What stands before the control.
+    pub caption: &'static str,
+    /// The accessible name of the control.
+    pub label: &'static str,
+    /// How much the value shown changes by a point of dragging.
+    pub step: f64,
+    /// How the value is written.
+    pub digits: Digits,
+    /// Whether it has an effect.
+    pub applies: fn(&Study) -> bool,
+}
+
+/// How the window writes a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Digits {
+    /// With three significant digits.
+    Significant,
+    /// With so many decimals.
+    Decimals(usize),
+    /// As a gain: three decimals, two where the third is zero.
+    Gain,
+}
+
+/// Where the control of a setting stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// Above the table of settings, with a slider.
+    Slider,
+    /// Above the table, on a line of its own.
+    Top,
+    /// On a line of its own.
+    Line,
+    /// On the line of the setting before it.
+    Beside,
+    /// In the view of what it is about.
+    Elsewhere,
+}
+
+/// The value of a setting.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the unit of files.
+    Number(f64),
+    /// Nothing, where there may be nothing.
+    Nothing,
+    /// The lower and the upper end.
+    Range([f64; 2]),
+    /// Yes or no.
+    Flag(bool),
+    /// The index of a choice.
+    Choice(usize),
+}
+
+/// A type of which a setting chooses one value.
+pub trait Choice: Copy + PartialEq + 'static {
+    /// All of them, in the order of the setting's words.
+    const ALL: &'static [Self];
+
+    /// Its index among all.
+    fn index(self) -> usize {
+        Self::ALL.iter().position(|one| *one == self).unwrap_or_default()
+    }
+}
+
+impl Choice for PhaseCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Delay, Self::Lead];
+}
+
+impl Choice for CouplingCorrection {
+    const ALL: &'static [Self] = &[Self::None, Self::Mixing, Self::MixingAndFeedback];
+}
+
+impl Choice for DelayFrom {
+    const ALL: &'static [Self] = &[Self::Median, Self::Band];
+}
+
+impl Choice for CostAverage {
+    const ALL: &'static [Self] = &[Self::Median, Self::Mean];
+}
+
+impl Choice for GainObjective {
+    const ALL: &'static [Self] = &[Self::Ratio, Self::Decibel];
+}
+
+impl Choice for GainSource {
+    const ALL: &'static [Self] = &[Self::Representatives, Self::MeanOfPairs];
+}
+
+impl Choice for LeadOrder {
+    const ALL: &'static [Self] = &[Self::Second, Self::First];
+}
+
+impl Choice for ScheduleKind {
+    const ALL: &'static [Self] = &SCHEDULE_KINDS;
+}
+
+impl Choice for DelayScheduling {
+    const ALL: &'static [Self] = &[Self::Automatic, Self::Always, Self::Never];
+}
+
+impl Choice for ScheduledQuantity {
+    const ALL: &'static [Self] = &[Self::LnGain, Self::Gain];
+}
+
+impl Choice for Option<SecondVariable> {
+    const ALL: &'static [Self] = &[None, Some(SecondVariable::Altitude), Some(SecondVariable::Mass)];
+}
+
+impl<C: Choice> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.index())
+    }
+}
+
+impl From<f64> for Value {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Value {
+    fn from(count: usize) -> Self {
+        Self::Number(count as f64)
+    }
+}
+
+impl From<bool> for Value {
+    fn from(flag: bool) -> Self {
+        Self::Flag(flag)
+    }
+}
+
+impl From<Option<f64>> for Value {
+    fn from(value: Option<f64>) -> Self {
+        value.map_or(Self::Nothing, Self::Number)
+    }
+}
+
+impl From<Band> for Value {
+    fn from(band: Band) -> Self {
+        Self::Range([band.min(), band.max()])
+    }
+}
+
+impl From<Option<GainBounds>> for Value {
+    fn from(bounds: Option<GainBounds>) -> Self {
+        bounds.map_or(Self::Nothing, |bounds| Self::Range([bounds.lower, bounds.upper]))
+    }
+}
+
+impl PartialEq for Setting {
+    fn eq(&self, other: &Self) -> bool {
+        self.key == other.key
+    }
+}
+
+impl Setting {
+    /// The decision that gives the setting a value.
+    pub fn to(&'static self, value: impl Into<Value>) -> Edit {
+        Edit::Set(self, value.into())
+    }
+
+    /// Its value.
+    pub fn value(&self, settings: &Settings) -> Value {
+        match self.kind {
+            Kind::Number { get, .. } => Value::Number(get(settings)),
+            Kind::Optional { get, .. } => get(settings).into(),
+            Kind::Range { get, .. } => get(settings).map_or(Value::Nothing, Value::Range),
+            Kind::Flag { get, .. } => Value::Flag(get(settings)),
+            Kind::Choice { get, .. } => Value::Choice(get(settings)),
+        }
+    }
+
+    /// Gives it a value, or refuses one outside its range and leaves the settings as they were.
+    pub(super) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
+        self.check(value)?;
+        match (self.kind, value) {
+            (Kind::Number { set, .. }, Value::Number(value)) => set(settings, value),
+            (Kind::Optional { set, .. }, Value::Number(value)) => set(settings, Some(value)),
+            (Kind::Optional { set, .. }, _) => set(settings, None),
+            (Kind::Range { set, .. }, Value::Range(ends)) => set(settings, Some(ends))?,
+            (Kind::Range { set, .. }, _) => set(settings, None)?,
+            (Kind::Flag { set, .. }, Value::Flag(value)) => set(settings, value),
+            (Kind::Choice { set, .. }, Value::Choice(index)) => set(settings, index),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Refuses a value that the setting may not have.
+    pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
+        match (self.kind, value) {
+            (Kind::Number { range, whole: true, .. }, Value::Number(found)) if found.fract() == 0.0 => {
+                self.check_range("a whole number", found, range)
+            }
+            (Kind::Number { range, whole: true, .. }, Value::Number(found)) => {
+                Err(self.out_of_range("a whole number", found, range))
+            }
+            (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
+                self.check_range(&self.a_number(), found, range)
+            }
+            // The band, which cannot be nothing, says itself what it may be.
+            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => Ok(Band::new(min, max).map(drop)?),
+            (Kind::Range { range: [least, most], .. }, Value::Range([lower, upper])) => {
+                self.check_range("a lower end", lower, [least, most])?;
+                self.check_range("an upper end", upper, [lower, most])
+            }
+            (Kind::Choice { words, .. }, Value::Choice(index)) => {
+                self.check_range("a whole number", index as f64, [0.0, words.len() as f64 - 1.0])
+            }
+            (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
+            (Kind::Range { nothing: Some(_), .. }, Value::Nothing) => Ok(()),
+            _ => Err(EditRefusal::NotAValue { setting: self.name }),
+        }
+    }
+
+    fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
+        let is_within = (range[0]..=range[1]).contains(&found);
+        if is_within { Ok(()) } else { Err(self.out_of_range(what, found, range)) }
+    }
+
+    fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
+        let expected = format!("{what} from {} to {}", number(least), number(most));
+        EditRefusal::OutOfRange { setting: self.name, expected, found }
+    }
+
+    fn a_number(&self) -> String {
+        if self.unit.file.is_empty() { "a number".to_owned() } else { format!("a number of {}", self.unit.file) }
+    }
+
+    /// Its value in words.
+    pub fn words(&self, settings: &Settings) -> String {
+        self.text(self.value(settings))
+    }
+
+    /// A value in words, with at most six significant digits: "20 ms", "by the quantile", "median".
+    pub fn text(&self, value: Value) -> String {
+        let Unit { shown, scale, .. } = self.unit;
+        let unit = if shown.is_empty() { String::new() } else { format!(" {shown}") };
+        match (self.kind, value) {
+            (_, Value::Number(value)) => format!("{}{unit}", six_digits(scale * value)),
+            (_, Value::Range([lower, upper])) => {
+                format!("{} to {}{unit}", six_digits(scale * lower), six_digits(scale * upper))
+            }
+            (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
+            (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
+            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, _) => nothing[1].to_owned(),
+            _ => String::new(),
+        }
+    }
+
+    /// What a command line may say of it: "none|delay|lead", "off|on|NUMBER".
+    pub fn syntax(&self) -> String {
+        match self.kind {
+            Kind::Number { .. } => "NUMBER".to_owned(),
+            Kind::Optional { nothing, on, .. } => {
+                format!("{}{}|NUMBER", nothing[0], if on.is_some() { "|on" } else { "" })
+            }
+            Kind::Range { .. } => "LO HI".to_owned(),
+            Kind::Flag { .. } => String::new(),
+            Kind::Choice { words, .. } => words.iter().map(|words| words[0]).collect::<Vec<_>>().join("|"),
+        }
+    }
+
+    /// The value that a command line says; a flag is said by its being there.
+    ///
+    /// # Errors
+    /// What was expected, and what was found.
+    pub fn read(&self, said: &[&str]) -> Result<Value, String> {
+        let real = |text: &str| text.trim().parse::<f64>().map_err(|_| format!("expected a number, found {text}"));
+        match (self.kind, said) {
+            (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
+            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, [word])
+                if *word == nothing[0] =>
+            {
+                Ok(Value::Nothing)
+            }
+            (Kind::Optional { on: Some(on), .. }, ["on"]) => Ok(Value::Number(on)),
+            (Kind::Optional { nothing, on, .. }, [text]) => text.parse().map(Value::Number).map_err(|_| {
+                let on = if on.is_some() { ", on" } else { "" };
+                format!("expected {}{on} or a number, found {text}", nothing[0])
+            }),
+            (Kind::Number { range: [least, most], whole: true, .. }, [text]) => {
+                let found = text.trim().parse::<usize>().ok().map(|count| count as f64);
+                let found = found.filter(|count| (least..=most).contains(count));
+                let expected = || format!("expected a whole number from {least} to {most}, found {text}");
+                found.map(Value::Number).ok_or_else(expected)
+            }
+            (Kind::Number { .. }, [text]) => real(text).map(Value::Number),
+            (Kind::Range { .. }, [lower, upper]) => Ok(Value::Range([real(lower)?, real(upper)?])),
+            (Kind::Choice { words, .. }, [text]) => {
+                let found = words.iter().position(|words| words[0] == *text);
+                found.map(Value::Choice).ok_or_else(|| {
+                    let (last, others) = words.split_last().map_or(("", words), |(last, others)| (last[0], others));
+                    let others: Vec<&str> = others.iter().map(|words| words[0]).collect();
+                    format!("expected {} or {last}, found {text}", others.join(", "))
+                })
+            }
+            _ => Err(format!("expected {}, found {}", self.syntax(), said.join(" "))),
+        }
+    }
+}
+
+impl Settings {
+    /// Refuses values outside their ranges: the first, with its setting.
+    ///
+    /// # Errors
+    /// The setting, and why its value is refused.
+    pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
+        let check =
+            |setting: &&'static Setting| setting.check(setting.value(self)).map_err(|refusal| (*setting, refusal));
+        SETTINGS.iter().try_for_each(check)
+    }
+}

@@ -1,0 +1,302 @@
+//! Other models of the bundles in place of the representatives, one at a time (M13.1).
+
+use gdcm_method::uncertainty::{
+    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, ScalarTable,
+    VarianceComponent,
+};
+use gdcm_model::response::{coherence_at, quantile};
+
+use super::*;
+
+/// What came of the substitutions of one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionSubstitutions {
+    /// How the figures change.
+    pub spread: ConditionSpread,
+    /// Figures of each substitution, with the bundle and the place of the model that stands in; none where it could not be analysed.
+    pub substitutions: Vec<Swap>,
+}
+
+/// A model in place of its representative, with the figures of the correction that it leads to.
+pub type Swap = (BundleKind, usize, Option<Arc<Figures>>);
+
+/// What substitutions are made of.
+#[derive(Clone, Copy)]
+pub(super) struct Substituting<'a> {
+    pub(super) run: Run<'a>,
+    pub(super) analysis: &'a ConditionAnalysis,
+    pub(super) responses: &'a ConditionResponses,
+    pub(super) couplings: Option<&'a Arc<FittedCouplings>>,
+}
+
+/// What comes of a substitution: the correction, and the G that it was asked for, and both D \[s\].
+#[derive(Clone, Debug)]
+pub(super) struct SubstitutedOptimum {
+    pub(super) correction: ChannelCorrection,
+    /// The deltas, G that of what leads leave.
+    pub(super) delta: Delta,
+}
+
+impl SubstitutedOptimum {
+    /// Of the representatives themselves.
+    pub(super) fn of(analysis: &ConditionAnalysis) -> Self {
+        let delta = Delta { gain: analysis.gain_problem.delta.clone(), ..analysis.comparison.delta.clone() };
+        Self { correction: analysis.correction.clone(), delta }
+    }
+
+    /// Logarithms of gains and delays \[s\]; none where a figure is not defined.
+    pub(super) fn figures(&self) -> Figures {
+        let Self { correction, delta: Delta { gain, delay_s, band_delay_s } } = self;
+        ScalarTable::from_fn(gain.outputs(), gain.inputs(), |scalar| {
+            let figure = match scalar {
+                Scalar::Gain(pair) => gain[pair]?.ln(),
+                Scalar::Delay(pair) => delay_s[pair]?,
+                Scalar::BandDelay(pair) => band_delay_s[pair]?,
+                Scalar::NetGain(pair) => correction.net_gain(pair).ln(),
+                Scalar::ChannelGain(channel) => correction.gain(channel).ln(),
+                Scalar::ChannelDelay(channel) => correction.delay_s(channel),
+            };
+            figure.is_finite().then_some(figure)
+        })
+    }
+}
+
+/// What a substitution depends on besides the two models: the settings of the analysis, the representatives, beside which phases lie, and
+/// the couplings.
+type SwapKey = (Settings, PairTable<bool>, [usize; 2], Option<Arc<FittedCouplings>>);
+
+/// The substitutions made last, by the physics and the identified model: a model that is rejected or restored leaves the others'.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SubstitutionMemo {
+    key: Option<SwapKey>,
+    kept: BTreeMap<[usize; 2], Option<Arc<Figures>>>,
+}
+
+impl Substituting<'_> {
+    fn representatives(&self) -> [usize; 2] {
+        [self.analysis.comparison.physics.model, self.analysis.comparison.identified.model]
+    }
+
+    /// The other kept models of a bundle, in file order; none that is set aside (M5b). A model that stands twice counts once, for
+    /// it says nothing more; copies of the representative count where there are no others.
+    fn others(&self, kind: BundleKind) -> Vec<usize> {
+        let representative = self.analysis.representative(kind);
+        let scores = representative.scores.iter().enumerate();
+        let kept = scores.filter(|(model, score)| score.is_some() && *model != representative.model);
+        let (responses, mut distinct) = (self.responses.bundle(kind), Vec::new());
+        // Models of the same numbers share their response.
+        let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
+        let mut copies = Vec::new();
+        for (model, _) in kept {
+            if is_copy(model, representative.model) {
+                copies.push(model);
+            } else if !distinct.iter().any(|&known| is_copy(known, model)) {
+                distinct.push(model);
+            }
+        }
+        copies.truncate(1);
+        if distinct.is_empty() { copies } else { distinct }
+    }
+
+    /// The settings that a substitution depends on.
+    fn key(&self) -> SwapKey {
+        let Study { settings, dataset, .. } = self.run.study;
+        let mut settings = settings.clone();
+        settings.schedule = Default::default();
+        settings.schedule_delays = Default::default();
+        settings.uncertainty = Default::default();
+        settings.gain_source = GainSource::Representatives;
+        (settings, dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())
+    }
+
+    fn compared(&self, kind: BundleKind, model: usize) -> Compared {
+        let coherence = self.run.study.settings.coherence_threshold;
+        Compared::of(&self.analysis.condition, self.responses, (kind, model), (self.run.grid, coherence))
+    }
+}
+
+impl SubstitutionMemo {
+    /// All substitutions; those that are not kept are made, each a step, with the correction that `optimum` finds for a comparison.
+    pub(super) fn complete(
+        &mut self,
+        substituting: &Substituting<'_>,
+        optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
+    ) -> Result<ConditionSubstitutions, Cancelled> {
+        let key = substituting.key();
+        if self.key.as_ref() != Some(&key) {
+            *self = Self { key: Some(key), kept: BTreeMap::new() };
+        }
+        let of_bundle = |kind| substituting.others(kind).into_iter().map(move |model| (kind, model));
+        let swaps: Vec<(BundleKind, usize)> = BundleKind::BOTH.into_iter().flat_map(of_bundle).collect();
+        let [physics, identified] = substituting.representatives();
+        let models = |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
+        // The mean over all pairs is no figure of the representatives: what changes are measured from is made too.
+        let Run { study, execution, .. } = substituting.run;
+        let base = (study.settings.gain_source == GainSource::MeanOfPairs).then_some([physics, identified]);
+        let wanted = swaps.iter().map(models).chain(base);
+        let missing: Vec<[usize; 2]> = wanted.filter(|pair| !self.kept.contains_key(pair)).collect();
+        execution.step(swaps.len().saturating_sub(missing.len()));
+        let made = make(substituting, &missing, optimum)?;
+        self.kept.extend(missing.into_iter().zip(made));
+        let kept = |pair: [usize; 2]| self.kept.get(&pair).cloned().flatten();
+        let substitutions: Vec<_> = swaps.iter().map(|swap| (swap.0, swap.1, kept(models(swap)))).collect();
+        let figures = |kind| -> Vec<Option<&Figures>> {
+            substitutions.iter().filter(|of| of.0 == kind).map(|of| of.2.as_deref()).collect()
+        };
+        let base = match base {
+            None => SubstitutedOptimum::of(substituting.analysis).figures(),
+            Some(pair) => match kept(pair) {
+                Some(base) => Figures::clone(&base),
+                None => SubstitutedOptimum::of(substituting.analysis).figures().map(|_, _| None),
+            },
+        };
+        let spread = ConditionSpread::of(&base, &figures(BundleKind::Physics), &figures(BundleKind::Identified));
+        Ok(ConditionSubstitutions { spread, substitutions })
+    }
+}
+
+/// The figures of each of these pairs of models.
+fn make(
+    substituting: &Substituting<'_>,
+    pairs: &[[usize; 2]],
+    optimum: impl Fn(&Mismatches, Delta) -> Result<Option<SubstitutedOptimum>, Cancelled> + Sync,
+) -> Result<Vec<Option<Arc<Figures>>>, Cancelled> {
+    if pairs.is_empty() {
+        return Ok(Vec::new());
+    }
+    let base = &substituting.analysis.comparison;
+    let [physics, identified] = substituting.representatives();
+    let simulated = substituting.compared(BundleKind::Physics, physics);
+    let reference = substituting.compared(BundleKind::Identified, identified);
+    let omega = substituting.run.grid.omega();
+    let median_phases =
+        base.representative.mismatch.map(|_, mismatch| mismatch.as_ref().map(|mismatch| mismatch.median_phase(omega)));
+    let substitution = |place: usize| {
+        let [a, b] = pairs[place];
+        let other;
+        let (simulated, reference) = if b == identified {
+            other = substituting.compared(BundleKind::Physics, a);
+            (&other, &reference)
+        } else {
+            other = substituting.compared(BundleKind::Identified, b);
+            (&simulated, &other)
+        };
+        let mut mismatch = simulated.against(reference);
+        // As if the pair were pinned: each phase difference is laid beside that of the representatives (M13.1).
+        for (pair, entry) in mismatch.iter_mut() {
+            *entry = entry.take().map(|entry| match median_phases[pair] {
+                Some(median_phase) => entry.align_branch(omega, median_phase),
+                None => entry,
+            });
+        }
+        let delta = Delta::of(&mismatch, omega);
+        // As of a pinned pair that has nothing to compare.
+        if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
+            return Ok(None);
+        }
+        Ok(optimum(&mismatch, delta)?.map(|optimum| Arc::new(optimum.figures())))
+    };
+    substituting.run.execution.each(pairs.len(), 1, substitution)?.into_iter().collect()
+}
+
+/// Natural logarithm of a ratio of 1 dB.
+const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
+/// The figures of a condition with what its substitutions and its identified representative say of them.
+pub(super) fn bar_source<'a>(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+    substitutions: &'a ConditionSubstitutions,
+) -> BarSource<'a> {
+    let figures = SubstitutedOptimum::of(result).figures();
+    let by_coherence = told_by_coherence(analysis, result);
+    let by_band = told_by_band(analysis, result);
+    let told = figures.map(|scalar, _| {
+        let (pair, deviation): (Pair, fn(&CoherenceError) -> f64) = match scalar {
+            _ if !takes_reported_error(result, scalar) => return None,
+            Scalar::Gain(pair) | Scalar::NetGain(pair) => (pair, |error| error.ln_gain),
+            Scalar::Delay(pair) | Scalar::BandDelay(pair) => (pair, |error| error.delay_s),
+            Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => return None,
+        };
+        let part = |(error, degrees): (CoherenceError, f64)| VarianceComponent {
+            variance: deviation(&error).powi(2),
+            degrees_of_freedom: degrees,
+        };
+        let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
+        let band = by_band.as_ref().and_then(|told| told[pair]).map(|error| part((error, f64::INFINITY)));
+        let coherence = coherence.map(|part| ReportedUncertainty { part, source: IdentificationSource::Coherence });
+        let band = band.map(|part| ReportedUncertainty { part, source: IdentificationSource::ModelBand });
+        coherence.or(band)
+    });
+    BarSource {
+        figures,
+        spread: &substitutions.spread,
+        told,
+        delay_bounds_s: [result.delay_problem.bounds.lower, result.delay_problem.bounds.upper],
+    }
+}
+
+/// Whether the error that the identified representative tells of itself counts for a value: for G, D and the net gains that are held
+/// and matched, which are G (M13.2). The other net gains and the channels rest on the spread of the models alone: what one response's
+/// error does to them is not known without that of all responses together.
+pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
+    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
+    match scalar {
+        Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
+        Scalar::NetGain(pair) => is_matched(pair),
+        Scalar::ChannelGain(_) | Scalar::ChannelDelay(_) => false,
+    }
+}
+
+/// Whether the identified representative of a condition tells an error of its own.
+pub(super) fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
+    told_by_band(analysis, result).is_some() || told_by_coherence(analysis, result).is_some()
+}
+
+/// The error of each response of the identified representative that its coherence tells, with its degrees of freedom; none where it
+/// was not measured so, or coherence counts for nothing.
+fn told_by_coherence(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+) -> Option<PairTable<Option<(CoherenceError, f64)>>> {
+    let settings = &analysis.study.settings;
+    let identified = result.representative_model(BundleKind::Identified);
+    let (Dynamics::Measured(response), Some(threshold)) = (&identified.dynamics, settings.coherence_threshold) else {
+        return None;
+    };
+    let estimate = response.estimate();
+    let measurement = settings.uncertainty.measurement(estimate.averages, estimate.window_s)?;
+    let coherence = coherence_at(response, &analysis.omega)?;
+    Some(coherence.map(|_, coherence| {
+        let error = measurement.error(&analysis.omega, coherence, threshold)?;
+        Some((error, measurement.degrees_of_freedom()))
+    }))
+}
+
+/// The error of each response of the identified representative that its own band tells: medians over the band of comparison. Its
+/// deviations are taken as known.
+fn told_by_band(analysis: &Analysis, result: &ConditionAnalysis) -> Option<PairTable<Option<CoherenceError>>> {
+    let identified = result.representative_model(BundleKind::Identified);
+    let bands = identified.bands.as_ref()?;
+    let band = analysis.study.settings.band;
+    let inside = |omega: &f64| (band.min()..=band.max()).contains(omega);
+    let omega = bands.omega();
+    Some(bands.sd_db().map(|pair, sd_db| {
+        let within = |values: &[f64], of: &dyn Fn(f64, f64) -> f64| -> Option<f64> {
+            let values = omega.iter().zip(values).filter(|(omega, _)| inside(omega));
+            let mut values: Vec<f64> = values.map(|(omega, value)| of(*omega, *value)).collect();
+            (!values.is_empty()).then(|| median(&mut values))
+        };
+        let ln_gain = within(sd_db, &|_, sd_db| LN_DB * sd_db)?;
+        let delay_s = within(&bands.sd_deg()[pair], &|omega, sd_deg| sd_deg.to_radians() / omega)?;
+        Some(CoherenceError { ln_gain, delay_s })
+    }))
+}
+
+/// `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
+pub(super) fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
+    result.comparison.representative.mismatch.map(|_, mismatch| {
+        let mut errors: Vec<f64> = mismatch.as_ref()?.magnitude_db.clone();
+        let width = quantile(&mut errors, 0.84) - quantile(&mut errors, 0.16);
+        Some(0.5 * LN_DB * width)
+    })
+}

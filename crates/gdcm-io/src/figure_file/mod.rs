@@ -10,8 +10,8 @@ use gdcm_study::study::Table;
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
-use gdcm_plot::paper::{pdf, svg, write_png};
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, LONG_COLUMNS};
+use gdcm_plot::paper::{pdf, svg, write_png};
 
 /// The format that the end of a file's name says.
 ///
